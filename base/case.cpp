@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/case.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/hash.hpp"
+
+namespace grouser {
+namespace {
+
+constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
+
+void describe_elasticity(FieldVisitor& v, SolidCase& s) {
+  v.quantity(
+      {"young_modulus", "Young's modulus; softer than real sand is usual, see docs", kOptional},
+      s.young_modulus, "Pa", Range::positive());
+  v.quantity({"poisson_ratio", "Poisson's ratio", kOptional}, s.poisson_ratio, "1",
+             Range::open(-1.0, 0.5));
+}
+
+void describe_solid(FieldVisitor& v, SolidCase& s) {
+  v.group({"solid", "elastic constants of the solid", kOptional},
+          [&](FieldVisitor& inner) { describe_elasticity(inner, s); });
+}
+
+void describe_surface(FieldVisitor& v, SurfaceCase& s) {
+  v.quantity({"restitution", "normal restitution coefficient"}, s.restitution, "1",
+             Range::closed(0.01, 1.0));
+  v.quantity({"friction", "Coulomb friction coefficient"}, s.friction, "1", Range::closed(0.0, 10));
+  v.quantity({"rolling_friction", "rolling resistance coefficient", kOptional}, s.rolling_friction,
+             "1", Range::closed(0.0, 10));
+}
+
+void describe_box(FieldVisitor& v, BoxCase& b) {
+  v.quantity({"length", "inner length along the driving direction x"}, b.length, "m",
+             Range::positive());
+  v.quantity({"width", "inner width along y"}, b.width, "m", Range::positive());
+  v.quantity({"depth", "height of the walls"}, b.depth, "m", Range::positive());
+  describe_solid(v, b.solid);
+}
+
+void describe_size_point(FieldVisitor& v, SizePoint& p) {
+  v.quantity({"diameter", "grain diameter of the real soil"}, p.diameter, "m", Range::positive());
+  v.quantity({"finer", "fraction of grains finer than the diameter"}, p.finer, "1",
+             Range::closed(0.0, 1.0));
+}
+
+bool is_size_curve(const std::vector<SizePoint>& curve) {
+  if (curve.size() < 2) return false;
+  if (curve.front().finer != 0.0 || curve.back().finer != 1.0) return false;
+  for (std::size_t i = 1; i < curve.size(); ++i)
+    if (curve[i].diameter <= curve[i - 1].diameter || curve[i].finer < curve[i - 1].finer)
+      return false;
+  return true;
+}
+
+void describe_grains(FieldVisitor& v, GrainsCase& g) {
+  v.quantity({"density", "density of the solid grain"}, g.density, "kg m-3", Range::positive());
+  describe_solid(v, g.solid);
+  v.list(
+      {"size_curve", "cumulative grain size curve, fine to coarse"}, g.size_curve.size(),
+      [&](std::size_t count) { g.size_curve.resize(count); },
+      [&](FieldVisitor& inner, std::size_t i) { describe_size_point(inner, g.size_curve[i]); });
+  v.word({"size_basis", "what the size curve counts", kOptional}, g.size_basis, {"number", "mass"});
+  v.quantity({"coarse_graining", "factor on every grain diameter", kOptional}, g.coarse_graining,
+             "1", Range::closed(0.01, 1e4));
+  v.integer({"seed", "seed of the random filling", kOptional}, g.seed, 0, kNoLimit);
+  v.rule("size_curve", is_size_curve(g.size_curve),
+         "must have two points or more, rising diameters and fractions from 0 to 1",
+         "for example [{diameter: 1 mm, finer: 0}, {diameter: 2 mm, finer: 1}]");
+}
+
+void describe_contact(FieldVisitor& v, ContactCase& c) {
+  v.word({"law", "normal and tangential contact law", kOptional}, c.law, {"hertz_mindlin"});
+  v.word({"rolling", "rolling resistance law", kOptional}, c.rolling, {"none", "elastic_plastic"});
+  v.group({"grain_grain", "surface of grains against each other"},
+          [&](FieldVisitor& inner) { describe_surface(inner, c.grain_grain); });
+  v.group({"grain_box", "surface of grains against the box"},
+          [&](FieldVisitor& inner) { describe_surface(inner, c.grain_box); });
+  v.group({"grain_wheel", "surface of grains against the wheel", kOptional},
+          [&](FieldVisitor& inner) { describe_surface(inner, c.grain_wheel); });
+}
+
+void describe_bed(FieldVisitor& v, BedCase& b) {
+  v.quantity({"depth", "settled depth wanted"}, b.depth, "m", Range::positive());
+  v.quantity(
+      {"solid_fraction", "solid fraction expected after settling; sets the grain count", kOptional},
+      b.solid_fraction, "1", Range::closed(0.05, 0.9));
+  v.quantity(
+      {"preparation_friction",
+       "grain-grain friction while settling, rolling friction in proportion; low gives dense",
+       kOptional},
+      b.preparation_friction, "1", Range::closed(0.0, 10));
+  v.quantity({"settled_energy_ratio",
+              "settled when mean kinetic energy per grain over mean m g d "
+              "is below this",
+              kOptional},
+             b.settled_energy_ratio, "1", Range::positive());
+  v.quantity({"settle_limit", "settling longer than this simulated time has failed", kOptional},
+             b.settle_limit, "s", Range::positive());
+}
+
+void describe_wheel_shape(FieldVisitor& v, WheelCase& w) {
+  v.word({"profile", "shape of the wheel", kOptional}, w.profile, {"drum", "grousers", "stl"});
+  v.quantity({"diameter", "outer diameter, grousers included"}, w.diameter, "m", Range::positive());
+  v.quantity({"width", "width of the wheel"}, w.width, "m", Range::positive());
+  v.integer({"facets", "flat facets around the rim", kOptional}, w.facets, 6, 100000);
+  v.integer({"grousers", "number of grousers", kOptional}, w.grousers, 0, 1000);
+  v.quantity({"grouser_height", "grouser height", kOptional}, w.grouser_height, "m",
+             Range::not_negative());
+  v.quantity({"grouser_width", "grouser thickness along the rim", kOptional}, w.grouser_width, "m",
+             Range::not_negative());
+  v.word({"stl_file", "surface file; its y axis through the origin is the axle", kOptional},
+         w.stl_file, {});
+  v.quantity({"stl_scale", "length of one unit of the surface file", kOptional}, w.stl_scale, "m",
+             Range::positive());
+  describe_solid(v, w.solid);
+  v.rule("stl_file", w.profile != "stl" || !w.stl_file.empty(), "is needed for profile stl",
+         "name the surface file");
+  v.rule("grousers",
+         w.profile != "grousers" || (w.grousers > 0 && w.grouser_height > 0 &&
+                                     w.grouser_width > 0 && w.grouser_height < 0.5 * w.diameter &&
+                                     static_cast<double>(w.grousers) * w.grouser_width <
+                                         3.14159 * (w.diameter - 2 * w.grouser_height)),
+         "grousers, grouser_height and grouser_width do not make a wheel",
+         "all must be positive and the grousers must fit around the rim");
+}
+
+void describe_wheel_motion(FieldVisitor& v, WheelCase& w) {
+  v.quantity({"load", "vertical load on the axle, weight of the wheel included"}, w.load, "N",
+             Range::positive());
+  v.quantity(
+      {"inertia", "moment of inertia about the axle; 0 = solid cylinder of that weight", kOptional},
+      w.inertia, "kg m2", Range::not_negative());
+  v.quantity({"start", "axle position at the start over box length", kOptional}, w.start, "1",
+             Range::open(0.0, 1.0));
+  v.quantity({"settle_time", "free vertical settling before driving off", kOptional}, w.settle_time,
+             "s", Range::not_negative());
+  v.quantity(
+      {"settle_speed",
+       "sinking speed at which a damper carries the load while settling; 0 = no damper", kOptional},
+      w.settle_speed, "m s-1", Range::not_negative());
+  v.quantity({"ramp_time", "linear rise of speed and spin", kOptional}, w.ramp_time, "s",
+             Range::not_negative());
+  v.quantity({"forward_speed", "speed of the axle"}, w.forward_speed, "m s-1", Range::positive());
+  v.quantity({"travel", "distance driven, ramp included"}, w.travel, "m", Range::positive());
+  v.quantity({"average_travel", "last part of the travel, over which means are taken"},
+             w.average_travel, "m", Range::positive());
+  v.word({"drive", "what is prescribed about the axle", kOptional}, w.drive,
+         {"slip", "towed", "torque", "rim_speed"});
+  v.quantity({"slip", "slip i = 1 - v/(omega r), for drive slip", kOptional}, w.slip, "1",
+             Range{-100.0, 0.99});
+  v.quantity({"torque", "axle torque, positive drives forward, for drive torque", kOptional},
+             w.torque, "N m", Range::any());
+  v.quantity({"rim_speed", "omega r, for drive rim_speed; 0 = locked", kOptional}, w.rim_speed,
+             "m s-1", Range::any());
+  v.rule("average_travel", w.average_travel <= w.travel, "is longer than the travel",
+         "make it the steady last part of the travel");
+}
+
+void describe_numerics(FieldVisitor& v, NumericsCase& n) {
+  v.quantity({"rayleigh_fraction", "time step over the smallest Rayleigh time", kOptional},
+             n.rayleigh_fraction, "1", Range::above_up_to(0.0, 0.5));
+  v.quantity({"time_step", "time step; 0 = from rayleigh_fraction", kOptional}, n.time_step, "s",
+             Range::not_negative());
+  v.quantity(
+      {"max_overlap", "overlap over the smaller radius at which the run is broken", kOptional},
+      n.max_overlap, "1", Range::above_up_to(0.0, 1.0));
+}
+
+void describe_output(FieldVisitor& v, OutputCase& o) {
+  v.quantity({"series_interval", "simulated time between rows of the time series", kOptional},
+             o.series_interval, "s", Range::positive());
+  v.quantity({"checkpoint_interval", "simulated time between checkpoints", kOptional},
+             o.checkpoint_interval, "s", Range::positive());
+}
+
+double largest_diameter(const GrainsCase& grains) {
+  return grains.size_curve.empty() ? 0.0
+                                   : grains.size_curve.back().diameter * grains.coarse_graining;
+}
+
+}  // namespace
+
+void describe(FieldVisitor& v, Case& c) {
+  v.quantity({"gravity", "acceleration of gravity, downward", kOptional}, c.gravity, "m s-2",
+             Range::positive());
+  v.group({"box", "open-topped box that holds the soil"},
+          [&](FieldVisitor& inner) { describe_box(inner, c.box); });
+  v.group({"grains", "the soil's grains"},
+          [&](FieldVisitor& inner) { describe_grains(inner, c.grains); });
+  v.group({"contact", "contact laws and surfaces"},
+          [&](FieldVisitor& inner) { describe_contact(inner, c.contact); });
+  v.group({"bed", "preparation of the bed"},
+          [&](FieldVisitor& inner) { describe_bed(inner, c.bed); });
+  v.optional_group({"wheel", "the wheel; without it the run only settles a bed", kOptional},
+                   c.has_wheel, [&](FieldVisitor& inner) {
+                     describe_wheel_shape(inner, c.wheel);
+                     describe_wheel_motion(inner, c.wheel);
+                   });
+  v.group({"numerics", "time step and limits", kOptional},
+          [&](FieldVisitor& inner) { describe_numerics(inner, c.numerics); });
+  v.group({"output", "what is written how often", kOptional},
+          [&](FieldVisitor& inner) { describe_output(inner, c.output); });
+  v.rule("box", largest_diameter(c.grains) < std::min({c.box.length, c.box.width, c.box.depth}),
+         "is smaller than one grain",
+         "the largest grain, coarse graining included, is " +
+             std::to_string(largest_diameter(c.grains) * 1e3) + " mm");
+  v.rule("bed", c.bed.depth <= c.box.depth, "depth is above the box walls",
+         "the walls are as high as box.depth");
+  v.rule("bed", c.bed.depth >= largest_diameter(c.grains), "depth is less than one grain",
+         "the largest grain, coarse graining included, is " +
+             std::to_string(largest_diameter(c.grains) * 1e3) + " mm");
+  v.rule("wheel", !c.has_wheel || c.wheel.start * c.box.length >= 0.25 * c.wheel.diameter,
+         "starts in the back wall", "start must leave a quarter of the diameter behind the axle");
+  v.rule("wheel", !c.has_wheel || c.wheel.width < c.box.width, "is wider than the box", "");
+  v.rule("wheel",
+         !c.has_wheel || c.wheel.start * c.box.length + c.wheel.travel <=
+                             c.box.length - 0.25 * c.wheel.diameter,
+         "runs into the end wall",
+         "start, travel and a quarter of the diameter must fit into the box length");
+}
+
+Case read_case(const YamlNode& node, std::vector<Problem>& problems) {
+  Case input;
+  read_fields(
+      node, [&](FieldVisitor& visitor) { describe(visitor, input); }, problems);
+  return input;
+}
+
+YamlNode write_case(const Case& input) {
+  Case copy = input;
+  return write_fields([&](FieldVisitor& visitor) { describe(visitor, copy); });
+}
+
+Case bed_case(const Case& input) {
+  Case bed = input;
+  bed.has_wheel = false;
+  bed.wheel = WheelCase{};
+  bed.contact.grain_wheel = SurfaceCase{};
+  return bed;
+}
+
+double run_duration(const Case& input) {
+  if (!input.has_wheel) return 0.0;
+  const WheelCase& wheel = input.wheel;
+  const double ramp_travel = 0.5 * wheel.ramp_time * wheel.forward_speed;
+  const double drive = wheel.travel >= ramp_travel
+                           ? 0.5 * wheel.ramp_time + wheel.travel / wheel.forward_speed
+                           : std::sqrt(2.0 * wheel.travel * wheel.ramp_time / wheel.forward_speed);
+  return wheel.settle_time + drive;
+}
+
+std::string content_key(const Case& input) {
+  Case copy = input;
+  copy.output = OutputCase{};
+  copy.numerics.max_overlap = NumericsCase{}.max_overlap;
+  return hash_text(emit_yaml(write_case(copy)));
+}
+
+}  // namespace grouser

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "campaign/cli/exit_codes.hpp"
+#include "campaign/cli/find.hpp"
+#include "campaign/cli/text.hpp"
+#include "campaign/cli/verbs.hpp"
+
+namespace grouser {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string file;
+  std::string site;
+  bool as_json = false;
+};
+
+Json json_of(const PlannedRun& run) {
+  Json ends = Json::array();
+  for (const auto& end : run.chunk_ends) ends.push_back(end ? Json(*end) : Json());
+  return Json{{"label", run.label},
+              {"waits_for_bed", run.bed_key},
+              {"simulated_time_s", run_duration(run.input)},
+              {"chunk_ends_s", ends}};
+}
+
+std::string ends_text(const PlannedRun& run) {
+  constexpr std::size_t kShown = 6;
+  std::string text;
+  for (std::size_t i = 0; i < run.chunk_ends.size(); ++i) {
+    if (i == kShown) return text + ", ...";
+    const auto& end = run.chunk_ends[i];
+    text += (i == 0 ? "" : ", ") + (end ? short_number(*end) + " s" : std::string("end"));
+  }
+  return text;
+}
+
+int plan_verb(const Options& options) {
+  const Plan plan = checked_plan(options.file, options.site);
+  if (options.as_json) {
+    Json runs = Json::array();
+    for (const PlannedRun& run : plan.runs) runs.push_back(json_of(run));
+    std::cout << Json{{"schema", 1}, {"campaign", plan.name}, {"runs", runs}}.dump(2) << "\n";
+    return exit_codes::kOk;
+  }
+  std::vector<std::vector<std::string>> rows;
+  std::size_t jobs = 0;
+  for (const PlannedRun& run : plan.runs) {
+    jobs += run.chunk_ends.size();
+    const double duration = run_duration(run.input);
+    rows.push_back({run.label, run.bed_key.empty() ? "-" : "bed-" + run.bed_key.substr(0, 8),
+                    duration > 0.0 ? short_number(duration) + " s" : "until settled",
+                    std::to_string(run.chunk_ends.size()), ends_text(run)});
+  }
+  const Resources& resources = plan.settings.resources;
+  std::cout << text_table({"RUN", "WAITS FOR", "SIMULATED TIME", "CHUNKS", "ENDING AT"}, rows)
+            << "\n"
+            << jobs << " jobs at least, scheduler " << plan.settings.scheduler << ", "
+            << resources.ranks << " ranks each"
+            << (resources.walltime > 0.0 ? ", walltime " + duration_text(resources.walltime) : "")
+            << "\n";
+  return exit_codes::kOk;
+}
+
+}  // namespace
+
+void add_plan(CLI::App& app, int& code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("plan", "show how the runs are cut into jobs");
+  verb->add_option("file", options->file, "campaign YAML")->required();
+  verb->add_option("--site", options->site, "site file with scheduler and resources");
+  verb->add_flag("--json", options->as_json, "as JSON");
+  verb->callback([options, &code] { code = plan_verb(*options); });
+}
+
+}  // namespace grouser

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/run_contract.hpp"
+#include "campaign/store/store.hpp"
+
+namespace grouser {
+
+/// Where a run is, from database and progress file.
+struct RunView {
+  RunRow run;
+  std::optional<Progress> progress;  ///< of an active run that has written one
+  double time = 0.0;                 ///< simulated [s]
+  double end_time = 0.0;             ///< 0 = unknown [s]
+  std::int64_t attempts = 0;         ///< this and the next two by count_work
+  std::int64_t chunks = 0;
+  std::int64_t chunks_done = 0;
+};
+
+/// All runs of the campaign; reads the progress files of the active ones. Local.
+std::vector<RunView> view_runs(const Store& store, const std::filesystem::path& root);
+
+/// Adds the numbers of attempts and chunks.
+void count_work(const Store& store, std::vector<RunView>& views);
+
+/// "0.123 / 0.460 s (27 %)", or what of it is known.
+std::string time_and_end(const RunView& view);
+
+/// One line: simulated time and end, speed in particle-steps/s, wall time left.
+std::string progress_line(const RunView& view, std::size_t label_width);
+
+/// "3 RUNNING, 5 COMPLETED".
+std::string count_states(const std::vector<RunView>& views);
+
+}  // namespace grouser

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "campaign/cli/exit_codes.hpp"
+#include "campaign/cli/find.hpp"
+#include "campaign/cli/text.hpp"
+#include "campaign/cli/verbs.hpp"
+
+namespace grouser {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string where;
+  std::string sql;
+  bool as_json = false;
+};
+
+// Numbers stay numbers; NULL is told from an empty text by being no text.
+Json json_value(const std::string& text, bool is_text) {
+  if (is_text) return text;
+  return text.empty() ? Json() : Json::parse(text, nullptr, false);
+}
+
+Table answer(const Options& options) {
+  const Store store = Store::open_read_only(find_root(options.where) / Store::kFileName);
+  try {
+    return store.query(options.sql);
+  } catch (const std::invalid_argument& error) {
+    throw ConfigError(
+        {Problem{"query", 0, 0, "", error.what(),
+                 "the views are v_status v_runs v_axes v_chunks v_attempts v_ledger"}});
+  }
+}
+
+int query(const Options& options) {
+  const Table table = answer(options);
+  if (!options.as_json) {
+    std::cout << text_table(table.columns, table.rows);
+    return exit_codes::kOk;
+  }
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    Json row = Json::object();
+    for (std::size_t k = 0; k < table.columns.size(); ++k)
+      row[table.columns[k]] = json_value(table.rows[i][k], table.is_text[i][k]);
+    rows.push_back(row);
+  }
+  std::cout << Json{{"schema", 1}, {"rows", rows}}.dump(2) << "\n";
+  return exit_codes::kOk;
+}
+
+}  // namespace
+
+void add_query(CLI::App& app, int& code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("query", "read the database with one SELECT over its views");
+  verb->add_option("sql", options->sql, "for example \"SELECT * FROM v_ledger\"")->required();
+  verb->add_option("-C,--campaign", options->where, "root, name or YAML of the campaign");
+  verb->add_flag("--json", options->as_json, "as JSON");
+  verb->callback([options, &code] { code = query(*options); });
+}
+
+}  // namespace grouser

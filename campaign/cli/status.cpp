@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "campaign/cli/exit_codes.hpp"
+#include "campaign/cli/find.hpp"
+#include "campaign/cli/progress.hpp"
+#include "campaign/cli/text.hpp"
+#include "campaign/cli/verbs.hpp"
+#include "campaign/drive/clock.hpp"
+
+namespace grouser {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kWatchInterval = 2.0;
+
+struct Options {
+  std::string where;
+  bool as_json = false;
+  bool watch = false;
+  bool check = false;
+};
+
+Json json_of(const RunView& view) {
+  Json axes = Json::object();
+  for (const AxisLabel& point : view.run.axes) axes[point.axis] = point.label;
+  Json json{{"label", view.run.label},
+            {"kind", word_of(view.run.kind)},
+            {"state", word_of(view.run.state)},
+            {"reason", view.run.reason},
+            {"directory", view.run.directory.string()},
+            {"axes", axes},
+            {"step", view.run.step},
+            {"time_s", view.time},
+            {"end_time_s", view.end_time > 0.0 ? Json(view.end_time) : Json()},
+            {"chunks", view.chunks},
+            {"chunks_done", view.chunks_done},
+            {"attempts", view.attempts},
+            {"failures", view.run.failures},
+            {"checkpoint", view.run.checkpoint},
+            {"state_hash", view.run.state_hash},
+            {"progress", Json()}};
+  if (view.progress)
+    json["progress"] = Json{{"phase", view.progress->phase},
+                            {"step", view.progress->step},
+                            {"particle_steps_per_second", view.progress->particle_steps_per_second},
+                            {"seconds_left", view.progress->seconds_left}};
+  return json;
+}
+
+void print_json(const CampaignRow& campaign, const std::filesystem::path& root,
+                const std::vector<RunView>& views) {
+  Json counts = Json::object();
+  for (const RunView& view : views) {
+    Json& count = counts[word_of(view.run.state)];
+    count = count.is_null() ? 1 : count.get<int>() + 1;
+  }
+  Json runs = Json::array();
+  for (const RunView& view : views) runs.push_back(json_of(view));
+  std::cout << Json{{"schema", 1},           {"campaign", campaign.name}, {"title", campaign.title},
+                    {"root", root.string()}, {"counts", counts},          {"runs", runs}}
+                   .dump(2)
+            << "\n";
+}
+
+void print_table(const CampaignRow& campaign, const std::filesystem::path& root,
+                 const std::vector<RunView>& views) {
+  std::vector<std::vector<std::string>> rows;
+  for (const RunView& view : views) {
+    const bool has_progress = view.progress.has_value();
+    rows.push_back({view.run.label, word_of(view.run.state), time_and_end(view),
+                    std::to_string(view.chunks_done) + "/" + std::to_string(view.chunks),
+                    std::to_string(view.attempts),
+                    has_progress ? short_number(view.progress->particle_steps_per_second, 3) : "",
+                    has_progress && view.progress->seconds_left >= 0.0
+                        ? duration_text(view.progress->seconds_left)
+                        : "",
+                    view.run.reason});
+  }
+  std::cout << campaign.name << "  " << root.string() << "\n"
+            << text_table({"RUN", "STATE", "SIMULATED TIME", "CHUNKS", "ATTEMPTS",
+                           "PARTICLE-STEPS/S", "LEFT", "REASON"},
+                          rows)
+            << count_states(views) << "\n";
+}
+
+bool needs_attention(const RunView& view) {
+  return view.run.state == State::kHeld || view.run.state == State::kFailed;
+}
+
+int status(const Options& options) {
+  const auto root = find_root(options.where);
+  const Store store = Store::open_read_only(root / Store::kFileName);
+  const CampaignRow campaign = store.campaign();
+  SystemClock clock;
+  for (;;) {
+    auto views = view_runs(store, root);
+    count_work(store, views);
+    if (options.watch && !options.as_json) std::cout << "\033[H\033[2J";
+    if (options.as_json)
+      print_json(campaign, root, views);
+    else
+      print_table(campaign, root, views);
+    std::cout << std::flush;
+    if (!options.watch) {
+      const bool waits = std::any_of(views.begin(), views.end(), needs_attention);
+      return options.check && waits ? exit_codes::kAttention : exit_codes::kOk;
+    }
+    clock.sleep(kWatchInterval);
+  }
+}
+
+}  // namespace
+
+void add_status(CLI::App& app, int& code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand(
+      "status", "where every run is; asks files and database, never a scheduler");
+  verb->add_option("-C,--campaign,campaign", options->where, "root, name or YAML of the campaign");
+  verb->add_flag("--json", options->as_json, "as JSON");
+  verb->add_flag("--watch", options->watch, "again every two seconds until Ctrl-C");
+  verb->add_flag("--check", options->check, "exit code 1 when a run is HELD or FAILED");
+  verb->callback([options, &code] { code = status(*options); });
+}
+
+}  // namespace grouser

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include "campaign/cli/dry_run.hpp"
+#include "campaign/cli/exit_codes.hpp"
+#include "campaign/cli/find.hpp"
+#include "campaign/cli/foreground.hpp"
+#include "campaign/cli/verbs.hpp"
+#include "campaign/drive/launch.hpp"
+#include "campaign/drive/lease_guard.hpp"
+#include "campaign/report/report.hpp"
+
+namespace grouser {
+namespace {
+
+// How long a verb waits for another manager's tick to end.
+constexpr double kLeasePatience = 30.0;
+
+struct Options {
+  std::string file;
+  std::string site;
+  std::string root;
+  std::string engine;
+  std::string script_dir;
+  bool dry_run = false;
+  bool detach = false;
+  bool wait = false;
+  bool update = false;
+  DriveOptions drive;
+};
+
+std::string list_of(const std::vector<std::string>& labels) {
+  constexpr std::size_t kShown = 8;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(labels.size(), kShown); ++i)
+    text += (i == 0 ? "" : ", ") + labels[i];
+  return labels.size() > kShown ? text + ", ..." : text;
+}
+
+void print_changes(const LaunchReport& report) {
+  if (!report.added.empty())
+    std::cout << report.added.size() << " new runs: " << list_of(report.added) << "\n";
+  if (!report.gone.empty())
+    std::cout << report.gone.size()
+              << " runs that the YAML no longer has are kept: " << list_of(report.gone) << "\n";
+  if (report.settings_changed) std::cout << "scheduler, resources or retries change\n";
+}
+
+// What is submitted stays as it was unless a person says that the change is meant.
+void refuse_silent_change(const LaunchReport& report, const Options& options) {
+  const bool changes = !report.added.empty() || !report.gone.empty() || report.settings_changed;
+  if (report.is_new || !changes || options.update) return;
+  print_changes(report);
+  throw ConfigError({Problem{options.file, 0, 0, "", "differs from the campaign that was submitted",
+                             "say --update to take the changes over, or give the campaign "
+                             "another name or --root"}});
+}
+
+int dry_run(const Options& options, const Plan& plan, const std::filesystem::path& root) {
+  std::cout << "campaign root: " << root.string() << "\n";
+  if (std::filesystem::exists(root / Store::kFileName)) {
+    const Store store = Store::open_read_only(root / Store::kFileName);
+    const auto report = compare_plan(plan, std::filesystem::absolute(options.file), root, store);
+    std::cout << "exists; " << report.added.size() << " runs would be added\n";
+    print_changes(report);
+  } else {
+    std::cout << "new; " << plan.runs.size() << " runs would be made\n";
+  }
+  show_scripts(plan, root, find_engine(options.engine), options.script_dir);
+  return exit_codes::kOk;
+}
+
+void launch(const Options& options, const Plan& plan, const std::filesystem::path& root) {
+  std::error_code error;
+  std::filesystem::create_directories(root, error);
+  if (error) throw StorageError("cannot create " + root.string() + ": " + error.message());
+  const auto source = std::filesystem::absolute(options.file).lexically_normal();
+  const auto engine = find_engine(options.engine);
+  Store store = Store::open(root / Store::kFileName);
+  SystemClock clock;
+  const LeaseGuard lease(store, clock, kLeasePatience, options.drive.take_over);
+  const LaunchReport report = compare_plan(plan, source, root, store);
+  refuse_silent_change(report, options);
+  launch_plan(plan, source, engine, root, clock.now(), store);
+  const auto beds = std::count_if(plan.runs.begin(), plan.runs.end(),
+                                  [](const PlannedRun& run) { return run.is_bed; });
+  std::cout << "campaign " << plan.name << ": " << plan.runs.size() - static_cast<std::size_t>(beds)
+            << " runs on " << beds << " beds, scheduler " << plan.settings.scheduler << ", in "
+            << root.string() << "\n";
+  if (!report.is_new) print_changes(report);
+}
+
+// Whether every run has its result.
+bool is_complete(const Store& store) {
+  const auto runs = store.runs();
+  return std::all_of(runs.begin(), runs.end(), [](const RunRow& run) {
+    return run.state == State::kCompleted || run.state == State::kSteady;
+  });
+}
+
+void say_how_to_go_on(const std::filesystem::path& root) {
+  std::cout << "jobs run on by themselves; carry the campaign on with\n"
+            << "  grouser tick -C " << root.string() << "     (again and again, or from cron)\n"
+            << "and look at it with\n"
+            << "  grouser status -C " << root.string() << "\n";
+}
+
+int finish(OpenCampaign& campaign) {
+  const ReportRequest request{campaign.root()};
+  const auto page = write_report(request);
+  std::cout << "\n" << summary_table(request) << "\nreport: " << page.string() << "\n";
+  if (is_complete(campaign.store())) return exit_codes::kOk;
+  std::cout << "some runs wait for a person: grouser status -C " << campaign.root().string()
+            << "\n";
+  return exit_codes::kAttention;
+}
+
+int submit(const Options& options) {
+  const Plan plan = checked_plan(options.file, options.site);
+  const auto root = root_of(plan.name, options.root);
+  if (options.dry_run) return dry_run(options, plan, root);
+  launch(options, plan, root);
+  OpenCampaign campaign(root);
+  const bool is_batch = scheduler_kind(plan.settings.scheduler).is_batch;
+  if (options.detach || (is_batch && !options.wait)) {
+    for (const std::string& message : campaign.tick(options.drive, kLeasePatience).messages)
+      std::cout << message << "\n";
+    say_how_to_go_on(root);
+    return exit_codes::kOk;
+  }
+  if (drive_in_foreground(campaign, options.drive)) return finish(campaign);
+  std::cout << "\ninterrupted; ";
+  say_how_to_go_on(root);
+  std::cout << "or in the foreground with the same grouser submit\n";
+  return exit_codes::kAttention;
+}
+
+}  // namespace
+
+void add_submit(CLI::App& app, int& code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("submit", "start a campaign, or go on with it");
+  verb->add_option("file", options->file, "campaign YAML")->required();
+  verb->add_option("--site", options->site, "site file with scheduler and resources");
+  verb->add_option("--root", options->root, "campaign root; default is runs/NAME here");
+  verb->add_option("--engine", options->engine, "the engine's program file");
+  verb->add_flag("--dry-run", options->dry_run, "write nothing; show the job scripts");
+  verb->add_option("--script-dir", options->script_dir,
+                   "with --dry-run: write the scripts into this directory");
+  CLI::Option* detach =
+      verb->add_flag("--detach", options->detach, "leave once the first jobs are submitted");
+  verb->add_flag("--wait", options->wait, "stay until the campaign ends (default for local)")
+      ->excludes(detach);
+  verb->add_flag("--update", options->update, "take over changes of the YAML");
+  add_drive_options(*verb, options->drive);
+  verb->callback([options, &code] { code = submit(*options); });
+}
+
+}  // namespace grouser

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include "campaign/cli/exit_codes.hpp"
+#include "campaign/cli/find.hpp"
+#include "campaign/cli/verbs.hpp"
+
+namespace grouser {
+
+void add_validate(CLI::App& app, int& code) {
+  struct Options {
+    std::string file;
+    std::string site;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("validate", "check a campaign; name all mistakes at once");
+  verb->add_option("file", options->file, "campaign YAML")->required();
+  verb->add_option("--site", options->site, "site file with scheduler and resources");
+  verb->callback([options, &code] {
+    const Plan plan = checked_plan(options->file, options->site);
+    const auto beds = std::count_if(plan.runs.begin(), plan.runs.end(),
+                                    [](const PlannedRun& run) { return run.is_bed; });
+    std::cout << options->file << ": good; " << plan.runs.size() - static_cast<std::size_t>(beds)
+              << " runs on " << beds << " beds\n";
+    code = exit_codes::kOk;
+  });
+}
+
+}  // namespace grouser

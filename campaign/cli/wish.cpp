@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "campaign/cli/wish.hpp"
+
+#include <algorithm>
+#include <iostream>
+#include <set>
+
+#include "campaign/cli/exit_codes.hpp"
+#include "campaign/cli/find.hpp"
+#include "campaign/drive/lease_guard.hpp"
+
+namespace grouser {
+namespace {
+
+constexpr double kLeasePatience = 30.0;
+constexpr double kStep = 0.5;
+
+// @return the runs to which the wish meant something
+std::set<RunId> write_wishes(OpenCampaign& campaign, const WishOptions& options, Wish wish,
+                             const std::string& done_word) {
+  const LeaseGuard lease(campaign.store(), campaign.clock(), kLeasePatience,
+                         options.drive.take_over);
+  std::set<RunId> meant;
+  for (const RunRow& run : select_runs(campaign.store(), options.runs, options.all)) {
+    if (make_wish(campaign.store(), run, wish, campaign.clock().now())) {
+      meant.insert(run.id);
+      std::cout << run.label << ": " << done_word << "\n";
+    } else if (!options.all) {
+      std::cout << run.label << ": is " << word_of(run.state) << ", nothing to do\n";
+    }
+  }
+  return meant;
+}
+
+bool any_ending(const Store& store, const std::set<RunId>& runs) {
+  const auto active = store.active_attempts();
+  return std::any_of(active.begin(), active.end(), [&](const AttemptRow& attempt) {
+    return runs.count(attempt.run) > 0 && !store.run(attempt.run).request.empty();
+  });
+}
+
+}  // namespace
+
+void add_wish_options(CLI::App& verb, WishOptions& options) {
+  verb.add_option("runs", options.runs, "labels, or patterns with * and ?");
+  verb.add_flag("--all", options.all, "all runs of the campaign");
+  verb.add_option("-C,--campaign", options.where, "root, name or YAML of the campaign");
+  add_drive_options(verb, options.drive);
+}
+
+int carry_out(const WishOptions& options, Wish wish, const std::string& done_word,
+              double patience) {
+  OpenCampaign campaign(find_root(options.where));
+  const auto meant = write_wishes(campaign, options, wish, done_word);
+  const double end = campaign.clock().now() + patience;
+  for (;;) {
+    for (const std::string& message : campaign.tick(options.drive, kLeasePatience).messages)
+      std::cout << message << "\n";
+    if (!any_ending(campaign.store(), meant)) return exit_codes::kOk;
+    if (campaign.clock().now() >= end) break;
+    campaign.clock().sleep(std::max(kStep, options.drive.every));
+  }
+  std::cout << "the jobs have been told; grouser tick or status shows when they have ended\n";
+  return exit_codes::kOk;
+}
+
+}  // namespace grouser

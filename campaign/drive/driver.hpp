@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "campaign/drive/clock.hpp"
+#include "campaign/drive/decide.hpp"
+#include "campaign/drive/submit.hpp"
+
+namespace grouser {
+
+/// What one tick did; `messages` are sentences for people, in order.
+struct TickReport {
+  int submitted = 0;
+  int ended = 0;
+  std::vector<std::string> messages;
+};
+
+/// How patient a tick is; what is not given is the scheduler kind's own.
+struct Patience {
+  std::optional<double> grace;  ///< how long a job may be absent [s]
+};
+
+/// Carries a campaign on: looks at every active attempt, settles those that ended, submits what may
+/// be submitted. It keeps nothing between ticks that is not in the database or in files, so a tick
+/// by another process goes on where this one stopped. Needs the lease during tick().
+class Driver {
+ public:
+  Driver(const std::filesystem::path& root, Store& store, Scheduler& scheduler, Clock& clock,
+         const Patience& patience = {});
+
+  TickReport tick();
+
+ private:
+  void look_at_active();
+  void look_at(const AttemptRow& attempt, const QueryAnswer& answer);
+  void carry_out_request(const RunRow& run, const AttemptRow& attempt);
+  void end_attempt(const RunRow& run, const ChunkRow& chunk, const Sighting& sighting,
+                   const Evidence& evidence);
+  void advance_runs();
+  void submit(const RunRow& run, const RunRow* bed);
+  std::int64_t job_limit() const;
+
+  std::filesystem::path root_;
+  Store& store_;
+  Scheduler& scheduler_;
+  Clock& clock_;
+  JobSettings shared_;
+  const SchedulerKind& kind_;
+  Policy policy_;
+  TickReport report_;
+};
+
+/// Whether nothing more will happen without a person: every run has ended, is held, or waits for
+/// one that is. Pure.
+bool is_at_rest(const std::vector<RunRow>& runs);
+
+/// Shared settings of the campaign in `store`, the engine's hash left out.
+JobSettings job_settings(const std::filesystem::path& root, const Store& store);
+
+}  // namespace grouser

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <CLI/CLI.hpp>
+
+#include <array>
+#include <iostream>
+#include <stdexcept>
+
+#include "base/errors.hpp"
+#include "base/log.hpp"
+#include "campaign/cli/exit_codes.hpp"
+#include "campaign/cli/verbs.hpp"
+#include "campaign/drive/lease_guard.hpp"
+
+namespace grouser {
+namespace {
+
+// In the order of the help text: from making a campaign to reading its results.
+constexpr std::array kVerbs{add_init, add_validate, add_expand, add_plan,   add_submit,
+                            add_tick, add_status,   add_show,   add_query,  add_logs,
+                            add_stop, add_cancel,   add_resume, add_report, add_schema};
+
+int parse(CLI::App& app, int argc, char** argv, int& code) {
+  try {
+    app.parse(argc, argv);
+    return code;
+  } catch (const CLI::CallForHelp& help) {
+    return app.exit(help);
+  } catch (const CLI::CallForVersion& version) {
+    return app.exit(version);
+  } catch (const CLI::ParseError& error) {
+    app.exit(error);
+    return exit_codes::kUsage;
+  }
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Restartable DEM-LBM campaigns: runs, chunks, jobs and their results.", "grouser");
+  app.set_version_flag("--version", GROUSER_VERSION);
+  app.require_subcommand(1);
+  int code = exit_codes::kOk;
+  for (const auto& add_verb : kVerbs) add_verb(app, code);
+  return parse(app, argc, argv, code);
+}
+
+int complain(const std::exception& error, int code) {
+  std::cout << std::flush;
+  std::cerr << error.what() << "\n";
+  return code;
+}
+
+}  // namespace
+}  // namespace grouser
+
+int main(int argc, char** argv) {
+  using namespace grouser;
+  try {
+    set_up_log(0);
+    return run(argc, argv);
+  } catch (const ConfigError& error) {
+    return complain(error, exit_codes::kInput);
+  } catch (const FormatError& error) {
+    return complain(error, exit_codes::kInput);
+  } catch (const StorageError& error) {
+    return complain(error, exit_codes::kStorage);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return complain(error, exit_codes::kStorage);
+  } catch (const CampaignBusy& error) {
+    return complain(error, exit_codes::kBusy);
+  } catch (const LeaseLost& error) {
+    return complain(error, exit_codes::kBusy);
+  } catch (const std::exception& error) {
+    return complain(error, exit_codes::kDefect);
+  }
+}

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/schema.hpp"
+#include "campaign/report/observables.hpp"
+
+namespace grouser {
+
+/// The `report:` part of a campaign.
+struct ReportSettings {
+  std::string horizontal = "powered";   ///< word of a SlipDefinition
+  std::string scatter_axis = "seed";    ///< sweep axis that repeats a point instead of making one
+  std::vector<std::string> recordings;  ///< folders, relative to the campaign file
+  std::vector<std::string> neglected;   ///< what the campaign leaves out, for readers
+
+  SlipDefinition slip_definition() const;
+};
+
+/// The one description of `report:`; see FieldVisitor.
+void describe(FieldVisitor& visitor, ReportSettings& settings);
+
+/// Reads and checks `report:`; a null node gives the defaults. Problems are appended. Local.
+ReportSettings read_report_settings(const YamlNode& node, std::vector<Problem>& problems);
+
+}  // namespace grouser

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "campaign/store/database.hpp"
+
+#include <sys/vfs.h>
+
+#include <algorithm>
+#include <array>
+
+namespace grouser {
+namespace {
+
+constexpr int kBusyMilliseconds = 30000;
+
+// f_type of file systems that several hosts mount, from statfs(2) and their own headers.
+constexpr std::array<unsigned long, 11> kSharedFileSystems{
+    0x6969,      // NFS
+    0x0BD00BD0,  // Lustre
+    0x47504653,  // GPFS
+    0x19830326,  // BeeGFS
+    0x65735546,  // FUSE
+    0xFF534D42,  // CIFS
+    0xFE534D42,  // SMB 2
+    0x00C36400,  // Ceph
+    0x01021997,  // 9P
+    0xAAD7AAEA,  // PanFS
+    0x5346414F,  // AFS
+};
+
+unsigned long file_system_of(const std::filesystem::path& file) {
+  struct statfs answer {};
+  const auto directory = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  if (::statfs(directory.c_str(), &answer) != 0) return kSharedFileSystems.front();
+  return static_cast<unsigned long>(static_cast<unsigned int>(answer.f_type));
+}
+
+}  // namespace
+
+JournalMode journal_mode_for(unsigned long file_system) {
+  const bool is_shared = std::find(kSharedFileSystems.begin(), kSharedFileSystems.end(),
+                                   file_system) != kSharedFileSystems.end();
+  return is_shared ? JournalMode{"DELETE", "FULL"} : JournalMode{"WAL", "FULL"};
+}
+
+std::unique_ptr<SQLite::Database> open_database(const std::filesystem::path& file, bool to_write) {
+  try {
+    if (!to_write && !std::filesystem::exists(file))
+      throw StorageError(file.string() + ": there is no such database");
+    const int flags =
+        to_write ? SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE : SQLite::OPEN_READONLY;
+    auto database = std::make_unique<SQLite::Database>(file.string(), flags, kBusyMilliseconds);
+    if (to_write) {
+      const JournalMode mode = journal_mode_for(file_system_of(file));
+      database->exec("PRAGMA foreign_keys = ON");
+      // Asks first: changing the mode, even to itself, needs a lock that a reader may hold.
+      if (database->execAndGet("PRAGMA journal_mode").getString() !=
+          (std::string(mode.journal) == "WAL" ? "wal" : "delete"))
+        database->execAndGet(std::string("PRAGMA journal_mode = ") + mode.journal);
+      database->exec(std::string("PRAGMA synchronous = ") + mode.synchronous);
+      migrate(*database);
+    } else if (database->execAndGet("PRAGMA user_version").getInt() != present_version()) {
+      throw FormatError(file.string() + ": a database of another version of grouser, or none; " +
+                        "run `grouser tick` to bring an older one up to date");
+    }
+    return database;
+  } catch (const SQLite::Exception& error) {
+    throw StorageError(file.string() + ": " + error.what());
+  }
+}
+
+WriteTransaction::WriteTransaction(SQLite::Database& database) : database_(database) {
+  database_.exec("BEGIN IMMEDIATE");
+}
+
+WriteTransaction::~WriteTransaction() {
+  if (is_open_) database_.tryExec("ROLLBACK");
+}
+
+void WriteTransaction::commit() {
+  database_.exec("COMMIT");
+  is_open_ = false;
+}
+
+}  // namespace grouser

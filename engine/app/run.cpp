@@ -1,0 +1,392 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/app/run.hpp"
+
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "base/atomic_file.hpp"
+#include "base/errors.hpp"
+#include "engine/app/setup.hpp"
+#include "engine/app/slice.hpp"
+#include "engine/core/agree.hpp"
+#include "engine/terrain/bed.hpp"
+
+namespace grouser {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kSettleCheckSteps = 50;
+constexpr std::size_t kKeptCheckpoints = 2;
+// Wall seconds that an ending attempt needs beside its checkpoint.
+constexpr double kFinaliseSeconds = 1.0;
+
+// What ranks ask for in a step's message; the largest wins.
+constexpr double kNothing = 0.0;
+constexpr double kPause = 1.0;
+constexpr double kStop = 2.0;
+constexpr double kStorage = 3.0;
+
+std::atomic<bool> stop_requested{false};
+
+std::int64_t steps_in(double time, double time_step) {
+  return std::max<std::int64_t>(1, std::llround(time / time_step));
+}
+
+// First step at or after a time; a hair less than a whole step is that step.
+std::int64_t step_at(double time, double time_step) {
+  return static_cast<std::int64_t>(std::ceil(time / time_step - 1e-6));
+}
+
+}  // namespace
+
+void request_stop() { stop_requested = true; }
+
+Run::Run(const Communicator& ranks, const EngineOptions& options, const Case& input,
+         Clock::time_point started)
+    : ranks_(ranks),
+      options_(options),
+      input_(input),
+      key_(content_key(input.has_wheel ? input : bed_case(input))),
+      started_(started),
+      world_(make_world(ranks, input)),
+      checkpoints_(ranks, options.run_directory / run_files::kCheckpoints) {
+  const double dt = world_.settings().time_step;
+  if (input_.has_wheel) {
+    wheel_ = std::make_unique<Wheel>(input_, world_, kWheelBody);
+    end_step_ = step_at(run_duration(input_), dt);
+  } else {
+    settled_energy_ = settled_energy(input_);
+    fall_time_ = std::sqrt(2.0 * Filling(input_).height() / input_.gravity);
+  }
+  if (options_.until_time)
+    until_step_ = std::max<std::int64_t>(1, step_at(*options_.until_time, dt));
+  series_steps_ = steps_in(input_.output.series_interval, dt);
+  checkpoint_steps_ = steps_in(input_.output.checkpoint_interval, dt);
+  const double rayleigh = rayleigh_time(input_.grains);
+  spdlog::info("app time_step={} s, {} of the Rayleigh time {} s", dt, dt / rayleigh, rayleigh);
+  if (dt > 0.3 * rayleigh)
+    spdlog::warn("app time step is over 0.3 of the Rayleigh time; contacts may gain energy");
+
+  on_first_rank(ranks_,
+                [&] { fs::create_directories(options_.run_directory / run_files::kEvents); });
+  const auto loaded = checkpoints_.load_newest(key_);
+  if (loaded) {
+    resume(*loaded);
+  } else {
+    begin();
+  }
+  first_step_ = step_;
+  reported_step_ = step_;
+  particles_ = world_.particle_count();
+  on_first_rank(ranks_,
+                [&] { series_.emplace(options_.run_directory / run_files::kSeries, step_); });
+  event("started", newest_);
+}
+
+bool Run::owns_fence() const {
+  const auto text = read_file(options_.run_directory / run_files::kFence);
+  return text && text->substr(0, text->find_last_not_of(" \n\r\t") + 1) == options_.token;
+}
+
+void Run::begin() {
+  if (!input_.has_wheel) {
+    fill(world_, input_);
+    return;
+  }
+  begin_from_bed();
+}
+
+void Run::begin_from_bed() {
+  const std::string bed_key = content_key(bed_case(input_));
+  if (options_.bed.empty())
+    throw ConfigError({Problem{"", 0, 0, "--bed", "is needed to start a run with a wheel",
+                               "give the run directory of the settled bed"}});
+  CheckpointStore bed(ranks_, options_.bed / run_files::kCheckpoints);
+  const auto loaded = bed.load_newest(bed_key);
+  if (!loaded || !loaded->manifest.settled_bed)
+    throw FormatError("no settled bed with key " + bed_key + " in " + options_.bed.string());
+  world_.load_state(loaded->state);
+  world_.reset_origins();
+  wheel_->place();
+  spdlog::info("app bed taken from {} step={}", loaded->manifest.file, loaded->manifest.step);
+}
+
+void Run::resume(const CheckpointStore::Loaded& loaded) {
+  world_.load_state(loaded.state);
+  if (wheel_) wheel_->load_state(loaded.state);
+  max_overlap_ = first_row(ranks_, table_of(loaded.state, "run")).at(0);
+  newest_ = loaded.manifest;
+  step_ = loaded.manifest.step;
+  spdlog::info("app continues from {} step={} time={} s", newest_.file, step_, time());
+}
+
+double Run::elapsed() const {
+  return std::chrono::duration<double>(Clock::now() - started_).count();
+}
+
+std::string Run::phase() const {
+  if (!wheel_) return "settling";
+  return wheel_->is_driving(time()) ? "driving" : "wheel_settling";
+}
+
+bool Run::is_done() const {
+  if (!input_.has_wheel) return newest_.settled_bed;
+  return step_ >= end_step_;
+}
+
+double Run::request() const {
+  if (stop_requested) return kStop;
+  if (ranks_.rank() != 0) return kNothing;
+  if (options_.walltime &&
+      elapsed() + 1.5 * slowest_checkpoint_ + kFinaliseSeconds > *options_.walltime)
+    return kPause;
+  std::error_code ignored;
+  if (step_ % 64 == 0 && fs::exists(options_.run_directory / run_files::kStop, ignored))
+    return kStop;
+  return kNothing;
+}
+
+Outcome Run::execute() {
+  if (is_done()) {
+    reason_ = "already at its end";
+    return outcome(EngineCode::kFinished);
+  }
+  if (!newest_.file.empty() && until_step_ > 0 && step_ >= until_step_) {
+    reason_ = "already at the end of the chunk";
+    return outcome(EngineCode::kPaused);
+  }
+  // The very first checkpoint costs little and makes every later failure restartable; it also
+  // measures what a checkpoint costs here.
+  if (newest_.file.empty() && !write_checkpoint(false)) return outcome(EngineCode::kFenceLost);
+  for (;;) {
+    double wanted = request();
+    if (!report_progress(false)) wanted = kStorage;
+    const World::StepResult result = world_.step(wanted);
+    ++step_;
+    if (wheel_) wheel_->advance(time(), result.max_overlap);
+    max_overlap_ = std::max(max_overlap_, result.max_overlap);
+    if (const auto code = after_step(result)) {
+      // A run that another attempt owns is left as it is.
+      if (*code != EngineCode::kFenceLost) {
+        write_slice();
+        report_progress(true);
+      }
+      return outcome(*code);
+    }
+  }
+}
+
+std::optional<EngineCode> Run::after_step(const World::StepResult& result) {
+  if (result.fault == Fault::kNotANumber || result.fault == Fault::kLostParticle ||
+      result.max_overlap > input_.numerics.max_overlap) {
+    reason_ = result.fault == Fault::kNotANumber ? "a force or velocity is not a number"
+              : result.fault == Fault::kLostParticle
+                  ? "a grain has left the box"
+                  : "overlap " + std::to_string(result.max_overlap) + " of a radius is over " +
+                        std::to_string(input_.numerics.max_overlap) +
+                        "; use stiffer grains or a smaller time step";
+    reason_ += " at step " + std::to_string(step_);
+    return EngineCode::kBrokeDown;
+  }
+  if (step_ % series_steps_ == 0) add_series_row();
+  if (const auto code = check_settling()) return code;
+  const bool run_ends = end_step_ > 0 && step_ >= end_step_;
+  const bool chunk_ends = until_step_ > 0 && step_ >= until_step_;
+  if (run_ends || chunk_ends) {
+    if (!write_checkpoint(false)) return EngineCode::kFenceLost;
+    reason_ = run_ends ? "the run is at its end" : "the chunk is at its end";
+    return run_ends ? EngineCode::kFinished : EngineCode::kPaused;
+  }
+  if (result.request > kNothing) return end_by_request(result.request);
+  if (step_ % checkpoint_steps_ == 0 && !write_checkpoint(false)) return EngineCode::kFenceLost;
+  return std::nullopt;
+}
+
+std::optional<EngineCode> Run::check_settling() {
+  if (input_.has_wheel || step_ % kSettleCheckSteps != 0 || time() < fall_time_)
+    return std::nullopt;
+  const double energy = world_.kinetic_energy() / static_cast<double>(particles_);
+  if (energy < settled_energy_) {
+    if (!write_checkpoint(true)) return EngineCode::kFenceLost;
+    reason_ = "the bed has settled";
+    return EngineCode::kFinished;
+  }
+  if (time() > input_.bed.settle_limit) {
+    reason_ = "the bed has not settled within bed.settle_limit: " + std::to_string(energy) +
+              " J per grain are over " + std::to_string(settled_energy_);
+    return EngineCode::kBrokeDown;
+  }
+  return std::nullopt;
+}
+
+EngineCode Run::end_by_request(double request) {
+  if (request >= kStorage) {
+    reason_ = "progress could not be written";
+    return EngineCode::kStorageFailed;
+  }
+  if (!write_checkpoint(false)) return EngineCode::kFenceLost;
+  reason_ = request >= kStop ? "stopped on request" : "the walltime is nearly used up";
+  return request >= kStop ? EngineCode::kStopped : EngineCode::kPaused;
+}
+
+bool Run::write_checkpoint(bool settled) {
+  const double from = elapsed();
+  State state;
+  world_.save_state(state);
+  if (wheel_) wheel_->save_state(state);
+  StateTable own;
+  own.name = "run";
+  own.key_count = 1;
+  own.real_fields = {{"max_overlap", "1", 1}};
+  if (ranks_.rank() == 0) {
+    own.integers = {0, 0};
+    own.reals = {max_overlap_};
+  }
+  state.push_back(std::move(own));
+  CheckpointManifest manifest;
+  manifest.case_key = key_;
+  manifest.step = step_;
+  manifest.time = time();
+  manifest.settled_bed = settled;
+  // Rows up to this step must be in the file before a state that lies behind them exists. They
+  // are written by the owner of the run alone.
+  bool owns = true;
+  on_first_rank(ranks_, [&] {
+    owns = owns_fence();
+    if (owns) series_->flush();
+  });
+  if (ranks_.from_first(owns ? 1 : 0) == 0) {
+    reason_ = "another attempt owns the run";
+    return false;
+  }
+  const auto written = checkpoints_.write(std::move(state), manifest, [&] {
+    try {
+      return owns_fence();
+    } catch (const StorageError& error) {
+      spdlog::error("app {}", error.what());
+      return false;
+    }
+  });
+  if (!written) {
+    reason_ = "another attempt owns the run";
+    return false;
+  }
+  newest_ = *written;
+  checkpoints_.retain(kKeptCheckpoints);
+  event("checkpoint", newest_);
+  const double cost = ranks_.max(elapsed() - from);
+  checkpoint_seconds_ += cost;
+  slowest_checkpoint_ = std::max(slowest_checkpoint_, cost);
+  return true;
+}
+
+void Run::add_series_row() {
+  const double kinetic = world_.kinetic_energy();
+  const auto contacts = static_cast<double>(world_.contacts());
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> values(15, kNone);
+  if (wheel_) {
+    const WheelSample s = wheel_->take_sample();
+    const double load = input_.wheel.load;
+    values = {s.travel,
+              s.sinkage,
+              s.slip(wheel_->radius()),
+              s.skid(wheel_->radius()),
+              s.spin,
+              s.forward_speed,
+              s.vertical_speed,
+              s.pull,
+              s.vertical_force,
+              s.side_force,
+              s.gross_tractive_effort,
+              s.motion_resistance(),
+              s.pull / load,
+              s.gross_tractive_effort / load,
+              s.axle_torque / (wheel_->radius() * load)};
+    max_overlap_ = s.max_overlap;
+  }
+  values.insert(values.end(), {kinetic, max_overlap_, contacts});
+  if (series_) series_->add(step_, time(), phase(), values);
+  max_overlap_ = 0.0;
+}
+
+bool Run::report_progress(bool now) {
+  if (ranks_.rank() != 0) return true;
+  const double at = elapsed();
+  if (!now && (step_ % 16 != 0 || at - reported_at_ < 1.0)) return true;
+  if (at > reported_at_ && step_ > reported_step_)
+    speed_ = static_cast<double>(step_ - reported_step_) * static_cast<double>(particles_) /
+             (at - reported_at_);
+  reported_at_ = at;
+  reported_step_ = step_;
+  Progress progress;
+  progress.token = options_.token;
+  progress.step = step_;
+  progress.time = time();
+  progress.end_time = static_cast<double>(end_step_) * world_.settings().time_step;
+  progress.particle_steps_per_second = speed_;
+  if (end_step_ > 0 && speed_ > 0.0)
+    progress.seconds_left =
+        static_cast<double>(end_step_ - step_) * static_cast<double>(particles_) / speed_;
+  progress.phase = phase();
+  try {
+    write_atomic(options_.run_directory / run_files::kProgress, to_json(progress));
+  } catch (const StorageError& error) {
+    spdlog::error("app {}", error.what());
+    return false;
+  }
+  return true;
+}
+
+void Run::write_slice() {
+  const std::string text = slice_text(world_, input_);
+  const std::string failure = agreed_failure(ranks_, [&] {
+    if (ranks_.rank() == 0) write_atomic(options_.run_directory / run_files::kSlice, text);
+  });
+  // A picture less does not undo a run.
+  if (!failure.empty()) spdlog::warn("app {}", failure);
+}
+
+void Run::event(const std::string& kind, const CheckpointManifest& manifest) {
+  Event record;
+  record.token = options_.token;
+  record.sequence = events_++;
+  record.kind = kind;
+  for (const char* name : {"SLURM_JOB_ID", "PBS_JOBID", "GROUSER_JOB"})
+    if (const char* job = std::getenv(name); job != nullptr && record.job.empty()) record.job = job;
+  record.step = manifest.step;
+  record.time = manifest.time;
+  record.checkpoint = manifest.file;
+  record.state_hash = manifest.state_hash;
+  char host[256] = "";
+  gethostname(host, sizeof host - 1);
+  record.host = host;
+  on_first_rank(ranks_, [&] { write_event(options_.run_directory, record); });
+}
+
+Outcome Run::outcome(EngineCode code) const {
+  Outcome out;
+  out.token = options_.token;
+  out.code = code;
+  out.reason = reason_;
+  out.step = step_;
+  out.time = time();
+  out.end_time = static_cast<double>(end_step_) * world_.settings().time_step;
+  out.checkpoint = newest_.file;
+  out.state_hash = newest_.state_hash;
+  out.particles = particles_;
+  out.steps_done = step_ - first_step_;
+  out.wall_seconds = elapsed();
+  out.checkpoint_seconds = checkpoint_seconds_;
+  out.compute_seconds = std::max(0.0, elapsed() - checkpoint_seconds_);
+  out.ranks = ranks_.size();
+  return out;
+}
+
+}  // namespace grouser

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "base/case.hpp"
+#include "base/run_contract.hpp"
+#include "engine/dem/world.hpp"
+#include "engine/io/checkpoint.hpp"
+#include "engine/io/series.hpp"
+#include "engine/terrain/wheel.hpp"
+
+namespace grouser {
+
+/// Command line of the engine; see docs/reference/formats/run_directory.md.
+struct EngineOptions {
+  std::filesystem::path run_directory;
+  std::string token;
+  std::filesystem::path bed;
+  std::optional<double> until_time;  ///< [s]
+  std::optional<double> walltime;    ///< [s]
+};
+
+/// Asks the running engine to write a checkpoint and end; for signal handlers. Local.
+void request_stop();
+
+/// One attempt of one run: from its newest checkpoint, or its beginning, to the end of the chunk,
+/// of the run, of the walltime, or until it is stopped or breaks.
+class Run {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// @throws ConfigError, FormatError, StorageError on every rank. Collective.
+  Run(const Communicator& ranks, const EngineOptions& options, const Case& input,
+      Clock::time_point started);
+
+  /// Steps until something ends the attempt. Collective.
+  Outcome execute();
+
+ private:
+  void begin();
+  void begin_from_bed();
+  void resume(const CheckpointStore::Loaded& loaded);
+  bool owns_fence() const;
+
+  bool is_done() const;
+  std::optional<EngineCode> after_step(const World::StepResult& result);
+  std::optional<EngineCode> check_settling();
+  double request() const;
+  EngineCode end_by_request(double request);
+
+  bool write_checkpoint(bool settled);
+  void add_series_row();
+  bool report_progress(bool now);  // whether it could be written
+  void write_slice();
+  void event(const std::string& kind, const CheckpointManifest& manifest);
+  Outcome outcome(EngineCode code) const;
+
+  double time() const { return static_cast<double>(step_) * world_.settings().time_step; }
+  double elapsed() const;
+  std::string phase() const;
+
+  Communicator ranks_;
+  EngineOptions options_;
+  Case input_;
+  std::string key_;
+  Clock::time_point started_;
+  World world_;
+  std::unique_ptr<Wheel> wheel_;
+  CheckpointStore checkpoints_;
+  std::optional<SeriesFile> series_;  // rank 0
+  CheckpointManifest newest_;
+  std::string reason_;
+  std::int64_t particles_ = 0;
+  std::int64_t step_ = 0;
+  std::int64_t first_step_ = 0;
+  std::int64_t end_step_ = 0;    // 0 = not known
+  std::int64_t until_step_ = 0;  // 0 = none
+  std::int64_t series_steps_ = 1;
+  std::int64_t checkpoint_steps_ = 1;
+  std::int64_t events_ = 0;
+  double settled_energy_ = 0.0;
+  double fall_time_ = 0.0;
+  double checkpoint_seconds_ = 0.0;
+  double slowest_checkpoint_ = 0.0;
+  double reported_at_ = 0.0;
+  std::int64_t reported_step_ = 0;
+  double speed_ = 0.0;
+  double max_overlap_ = 0.0;
+};
+
+}  // namespace grouser

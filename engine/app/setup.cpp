@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/app/setup.hpp"
+
+#include <algorithm>
+
+#include "engine/terrain/bed.hpp"
+#include "engine/terrain/shapes.hpp"
+
+namespace grouser {
+namespace {
+
+// Of the mean grain diameter: wide enough to keep a list for tens of steps of a moving bed.
+constexpr double kSkin = 0.1;
+// Grains thrown up stay in the world up to this far above the walls [m].
+constexpr double kHeadroom = 2.0;
+
+Solid solid_of(const SolidCase& s) { return {s.young_modulus, s.poisson_ratio}; }
+Surface surface_of(const SurfaceCase& s) { return {s.restitution, s.friction, s.rolling_friction}; }
+
+// Rolling resistance holds grains apart as friction does; both are lowered in the same proportion.
+Surface preparation_surface(const Case& input) {
+  Surface surface = surface_of(input.contact.grain_grain);
+  const double share =
+      surface.friction > 0.0 ? input.bed.preparation_friction / surface.friction : 1.0;
+  surface.friction = input.bed.preparation_friction;
+  surface.rolling_friction *= share;
+  return surface;
+}
+
+}  // namespace
+
+World make_world(const Communicator& ranks, const Case& input) {
+  const SizeCurve sizes(input.grains);
+  const double walls = input.has_wheel
+                           ? input.box.depth + input.wheel.diameter
+                           : std::max(input.box.depth, Filling(input).height() + sizes.largest());
+  WorldSettings settings;
+  settings.low = {0.0, 0.0, 0.0};
+  settings.high = {input.box.length, input.box.width, walls + kHeadroom};
+  settings.gravity = input.gravity;
+  settings.time_step = time_step_of(input);
+  settings.largest_radius = 0.5 * sizes.largest();
+  settings.skin = kSkin * sizes.mean();
+  settings.law = input.contact.law;
+  settings.rolling = input.contact.rolling;
+  settings.grain = solid_of(input.grains.solid);
+  settings.grain_grain = surface_of(input.contact.grain_grain);
+  if (!input.has_wheel) settings.grain_grain = preparation_surface(input);
+
+  World world(ranks, settings);
+  world.add_body("box", box_mesh(input.box.length, input.box.width, walls),
+                 solid_of(input.box.solid), surface_of(input.contact.grain_box), false);
+  if (input.has_wheel)
+    world.add_body("wheel", wheel_mesh(input.wheel), solid_of(input.wheel.solid),
+                   surface_of(input.contact.grain_wheel), true);
+  return world;
+}
+
+void fill(World& world, const Case& input) {
+  const Filling filling(input);
+  const Communicator& ranks = world.ranks();
+  const std::int64_t first = first_key(filling.count(), ranks.size(), ranks.rank());
+  const std::int64_t last = first_key(filling.count(), ranks.size(), ranks.rank() + 1);
+  for (std::int64_t id = first; id < last; ++id) world.add_particle(filling.particle(id));
+}
+
+}  // namespace grouser

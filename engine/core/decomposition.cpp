@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/core/decomposition.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "base/errors.hpp"
+
+namespace grouser {
+
+Decomposition::Decomposition(const Vec3& low, const Vec3& high, int size, int rank, double reach)
+    : low_(low), high_(high) {
+  const double length = high.x - low.x;
+  const double width = high.y - low.y;
+  double best = std::numeric_limits<double>::infinity();
+  bool found = false;
+  for (int nx = 1; nx <= size; ++nx) {
+    if (size % nx != 0) continue;
+    const int ny = size / nx;
+    if ((nx > 1 && length / nx < reach) || (ny > 1 && width / ny < reach)) continue;
+    const double cut = (nx - 1) * width + (ny - 1) * length;  // what the halo traffic follows
+    if (cut >= best) continue;
+    best = cut;
+    columns_x_ = nx;
+    columns_y_ = ny;
+    found = true;
+  }
+  if (!found)
+    throw ConfigError({Problem{"", 0, 0, "ranks",
+                               std::to_string(size) +
+                                   " ranks cut the box into columns narrower than the reach of a "
+                                   "contact (" +
+                                   std::to_string(reach) + " m)",
+                               "use fewer ranks"}});
+  at_x_ = rank / columns_y_;
+  at_y_ = rank % columns_y_;
+}
+
+int Decomposition::owner_of(const Vec3& position) const {
+  const auto index = [](double at, double low, double high, int count) {
+    const double scaled = (at - low) / (high - low) * count;
+    return static_cast<int>(std::clamp(scaled, 0.0, count - 1.0));
+  };
+  return index(position.x, low_.x, high_.x, columns_x_) * columns_y_ +
+         index(position.y, low_.y, high_.y, columns_y_);
+}
+
+int Decomposition::neighbour(int step_x, int step_y) const {
+  const int x = at_x_ + step_x;
+  const int y = at_y_ + step_y;
+  if (x < 0 || x >= columns_x_ || y < 0 || y >= columns_y_) return -1;
+  return x * columns_y_ + y;
+}
+
+}  // namespace grouser

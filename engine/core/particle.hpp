@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "engine/core/vec3.hpp"
+
+namespace grouser {
+
+/// A spherical grain. One record of 96 bytes, read whole by the contact sweep.
+/// Velocities stand half a time step behind the position (leapfrog).
+struct Particle {
+  Vec3 position;        ///< of the centre [m]
+  double radius = 0.0;  ///< [m]
+  Vec3 velocity;        ///< [m s-1]
+  double mass = 0.0;    ///< [kg]
+  Vec3 spin;            ///< angular velocity [rad s-1]
+  std::int64_t id = 0;  ///< 0 ... N-1, the same on every rank
+};
+static_assert(sizeof(Particle) == 96);
+
+}  // namespace grouser

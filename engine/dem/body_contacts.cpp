@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/dem/body_contacts.hpp"
+
+#include <algorithm>
+
+#include "engine/dem/history_view.hpp"
+
+namespace grouser {
+
+BodyContacts::BodyContacts(ContactLaw law, RollingLaw rolling)
+    : law_(law), rolling_(rolling), history_width_(grouser::history_width(law, rolling)) {}
+
+void BodyContacts::build(const std::vector<Particle>& particles, std::size_t owned,
+                         const Body& body, std::int64_t number, const ContactRecords& records) {
+  touches_.clear();
+  history_.clear();
+  for (std::size_t i = 0; i < owned; ++i)
+    for (std::size_t r = records.begin(i); r < records.end(i); ++r) {
+      if (records.names(r)[0] != number) continue;
+      touches_.push_back({static_cast<std::uint32_t>(i), static_cast<int>(records.names(r)[1])});
+      history_.insert(history_.end(), records.values(r), records.values(r) + history_width_);
+    }
+  find_near(particles, owned, body);
+}
+
+void BodyContacts::find_near(const std::vector<Particle>& particles, std::size_t owned,
+                             const Body& body) {
+  const BodyFrame frame(body.motion);
+  near_.clear();
+  for (std::size_t i = 0; i < owned; ++i)
+    if (body.search->may_be_near(frame.to_body(particles[i].position), body.turns))
+      near_.push_back(static_cast<std::uint32_t>(i));
+}
+
+void BodyContacts::inherit(std::size_t first, std::size_t last, const MeshSearch& search,
+                           const std::vector<MeshTouch>& now, std::vector<double>& histories) {
+  histories.assign(now.size() * history_width_, 0.0);
+  std::vector<bool> is_taken(last - first, false);
+  std::vector<bool> is_old(now.size(), false);
+  const auto take = [&](std::size_t t, std::size_t before) {
+    std::copy_n(history(before), history_width_,
+                histories.begin() + static_cast<std::ptrdiff_t>(t * history_width_));
+    is_taken[before - first] = true;
+    is_old[t] = true;
+  };
+  for (std::size_t t = 0; t < now.size(); ++t)
+    for (std::size_t before = first; before < last; ++before)
+      if (touches_[before].facet == now[t].facet) take(t, before);
+  // A touch that left its facet goes on across the edge.
+  for (std::size_t t = 0; t < now.size(); ++t)
+    for (std::size_t before = first; before < last && !is_old[t]; ++before)
+      if (!is_taken[before - first] && search.are_neighbours(touches_[before].facet, now[t].facet))
+        take(t, before);
+}
+
+template <class Law, class Rolling>
+double BodyContacts::sweep(const Law& law, const Rolling& rolling,
+                           const std::vector<Particle>& particles, const Body& body,
+                           double time_step, std::vector<Vec3>& force, std::vector<Vec3>& moment,
+                           BodyLoad& load) {
+  using View = HistoryView<Law, Rolling>;
+  const BodyFrame frame(body.motion);
+  const Vec3 body_spin{0.0, body.motion.spin, 0.0};
+  double largest = 0.0;
+  std::size_t before = 0;
+  std::vector<MeshTouch> now;
+  std::vector<double> histories;
+  for (const std::uint32_t i : near_) {
+    const Particle& p = particles[i];
+    now.clear();
+    body.search->touches_of(frame.to_body(p.position), p.radius, now);
+    while (before < touches_.size() && touches_[before].particle < i) ++before;
+    std::size_t after = before;
+    while (after < touches_.size() && touches_[after].particle == i) ++after;
+    if (now.empty()) continue;
+    inherit(before, after, *body.search, now, histories);
+    for (std::size_t t = 0; t < now.size(); ++t) {
+      const Vec3 point = frame.to_world(now[t].point);
+      ContactPoint at;
+      at.overlap = p.radius - now[t].distance;
+      at.radius = p.radius;
+      at.mass = p.mass;
+      at.normal = (1.0 / now[t].distance) * (p.position - point);
+      const Vec3 arm = point - body.motion.position;
+      const Vec3 velocity = p.velocity - body.motion.velocity - cross(body_spin, arm);
+      at.normal_velocity = dot(velocity, at.normal);
+      const double reach = p.radius - 0.5 * at.overlap;
+      at.slip_velocity =
+          velocity - at.normal_velocity * at.normal - reach * cross(p.spin, at.normal);
+      const Vec3 spin = p.spin - body_spin;
+      at.rolling_rate = spin - dot(spin, at.normal) * at.normal;
+
+      typename Law::History contact_history;
+      typename Rolling::History rolling_history;
+      double* const stored = histories.data() + t * View::kWidth;
+      View::load(stored, contact_history, rolling_history);
+      const ContactForce result = law.evaluate(at, contact_history, time_step);
+      const Vec3 turning = rolling.evaluate(at, result, rolling_history, time_step);
+      View::store(stored, contact_history, rolling_history);
+
+      const Vec3 on_grain = result.normal * at.normal + result.tangential;
+      force[i] += on_grain;
+      moment[i] += reach * cross(result.tangential, at.normal) + turning;
+      load.force_x.add(-on_grain.x);
+      load.force_y.add(-on_grain.y);
+      load.force_z.add(-on_grain.z);
+      load.moment_y.add(-(cross(arm, on_grain).y + turning.y));
+      largest = std::max(largest, at.overlap / p.radius);
+      next_touches_.push_back({i, now[t].facet});
+    }
+    next_history_.insert(next_history_.end(), histories.begin(), histories.end());
+  }
+  return largest;
+}
+
+double BodyContacts::add_forces(const std::vector<Particle>& particles, const Body& body,
+                                double time_step, std::vector<Vec3>& force,
+                                std::vector<Vec3>& moment, BodyLoad& load) {
+  next_touches_.clear();
+  next_history_.clear();
+  const double largest = std::visit(
+      [&](const auto& law, const auto& rolling) {
+        return sweep(law, rolling, particles, body, time_step, force, moment, load);
+      },
+      law_, rolling_);
+  touches_.swap(next_touches_);
+  history_.swap(next_history_);
+  return largest;
+}
+
+}  // namespace grouser

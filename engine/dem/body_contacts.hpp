@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/core/exact_sum.hpp"
+#include "engine/core/particle.hpp"
+#include "engine/core/state_io.hpp"
+#include "engine/dem/body.hpp"
+#include "engine/dem/contact_records.hpp"
+#include "engine/dem/laws/table.hpp"
+
+namespace grouser {
+
+/// Force [N] and moment about the body's origin [N m] of the grains on a body; sums that do not
+/// depend on ranks.
+struct BodyLoad {
+  ExactSum force_x, force_y, force_z;
+  ExactSum moment_y;  ///< about the axle
+};
+
+/// Contacts of owned grains with one body, under the same laws as grain pairs. A grain may touch a
+/// body in several places (a corner); each touch has its own history, which follows the grain from
+/// facet to neighbouring facet.
+class BodyContacts {
+ public:
+  BodyContacts(ContactLaw law, RollingLaw rolling);
+
+  /// Takes over histories and looks for grains near the body.
+  /// @param records histories by owned grain with names {body, facet}; `number` is this body's
+  void build(const std::vector<Particle>& particles, std::size_t owned, const Body& body,
+             std::int64_t number, const ContactRecords& records);
+
+  /// Looks again for grains that come within the search's reach of the body; only they are looked
+  /// at in the steps that follow. Histories stay. Local.
+  void find_near(const std::vector<Particle>& particles, std::size_t owned, const Body& body);
+
+  /// Adds forces and moments to owned grains and the opposite to `load`.
+  /// @return largest overlap over grain radius [1]
+  double add_forces(const std::vector<Particle>& particles, const Body& body, double time_step,
+                    std::vector<Vec3>& force, std::vector<Vec3>& moment, BodyLoad& load);
+
+  std::size_t count() const { return touches_.size(); }
+  std::size_t history_width() const { return history_width_; }
+
+  /// The touch of an owned grain; `at` counts up through touches ordered by grain.
+  struct Touch {
+    std::uint32_t particle = 0;
+    int facet = 0;
+  };
+  const std::vector<Touch>& touches() const { return touches_; }
+  const double* history(std::size_t touch) const {
+    return history_.data() + touch * history_width_;
+  }
+
+ private:
+  template <class Law, class Rolling>
+  double sweep(const Law& law, const Rolling& rolling, const std::vector<Particle>& particles,
+               const Body& body, double time_step, std::vector<Vec3>& force,
+               std::vector<Vec3>& moment, BodyLoad& load);
+  /// Finds the history of a touch among those of the same grain in the step before.
+  void inherit(std::size_t first, std::size_t last, const MeshSearch& search,
+               const std::vector<MeshTouch>& now, std::vector<double>& histories);
+
+  ContactLaw law_;
+  RollingLaw rolling_;
+  std::size_t history_width_ = 0;
+  std::vector<std::uint32_t> near_;
+  std::vector<Touch> touches_;  // of the last step, by grain, then facet
+  std::vector<double> history_;
+  std::vector<Touch> next_touches_;
+  std::vector<double> next_history_;
+};
+
+}  // namespace grouser

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "engine/core/state_io.hpp"
+#include "engine/core/vec3.hpp"
+
+namespace grouser {
+
+/// Elastic constants of a solid. Young's modulus [Pa], Poisson's ratio [1].
+struct Solid {
+  double young_modulus = 0.0;
+  double poisson_ratio = 0.0;
+};
+
+/// Surface of a pair of solids: normal restitution, Coulomb friction and rolling resistance
+/// coefficients [1].
+struct Surface {
+  double restitution = 1.0;
+  double friction = 0.0;
+  double rolling_friction = 0.0;
+};
+
+/// The moving state of one contact, as every law gets it. The normal points from body b to body a;
+/// velocities are those of a relative to b.
+struct ContactPoint {
+  double overlap = 0.0;          ///< [m], > 0
+  double radius = 0.0;           ///< effective radius 1/(1/Ra + 1/Rb) [m]
+  double mass = 0.0;             ///< effective mass 1/(1/ma + 1/mb) [kg]
+  Vec3 normal;                   ///< unit vector
+  double normal_velocity = 0.0;  ///< rate of separation [m s-1], negative when approaching
+  Vec3 slip_velocity;            ///< of a's surface over b's in the contact plane [m s-1]
+  Vec3 rolling_rate;  ///< spin of a relative to b, twist about the normal removed [rad s-1]
+};
+
+/// What a contact does to a.
+struct ContactForce {
+  double normal = 0.0;     ///< along the normal [N], never negative: dry grains do not pull
+  Vec3 tangential;         ///< [N]
+  double stiffness = 0.0;  ///< tangential stiffness of this moment [N m-1], for rolling laws
+};
+
+/// Hertz normal force, Mindlin tangential spring with Coulomb limit, viscous damping in both.
+///
+/// Normal: F = 4/3 E* sqrt(R) d^(3/2) - 2 sqrt(5/6) beta sqrt(Sn m) v, Sn = 2 E* sqrt(R d)
+/// (Tsuji, Tanaka, Ishida 1992), cut at zero so that damping never pulls. beta is chosen so that
+/// this cut law returns the wanted restitution exactly, at any impact speed (the law has no speed
+/// scale; see damping_for).
+/// Tangential: dF = -St du, St = 8 G* sqrt(R d) (Mindlin 1949); when the contact unloads, the
+/// elastic force shrinks with St, which keeps a closed loop from creating energy (Thornton,
+/// Cummins, Cleary 2013). While it sticks, damping with the same beta is added; the sum never
+/// exceeds friction times the normal force.
+/// Neglected: partial slip of the Mindlin-Deresiewicz theory, twist about the normal, spin of the
+/// pair about its normal (the elastic force is projected onto the new contact plane instead).
+class HertzMindlin {
+ public:
+  static constexpr const char* kName = "hertz_mindlin";
+  static constexpr const char* kSource =
+      "Hertz 1882; Mindlin 1949; Tsuji, Tanaka, Ishida 1992; Thornton, Cummins, Cleary 2013";
+
+  /// What one contact remembers. All zero is a contact that has just begun.
+  struct History {
+    Vec3 spring;         ///< elastic part of the tangential force on a [N]
+    double patch = 0.0;  ///< sqrt(R d) of the step before [m]; 0 = no contact
+  };
+  static std::vector<StateField> history_fields() {
+    return {{"spring", "N", 3}, {"patch", "m", 1}};
+  }
+
+  HertzMindlin() = default;
+  static HertzMindlin from_parameters(const Solid& a, const Solid& b, const Surface& surface);
+
+  /// Force on a; renews `history`. @param time_step [s]
+  inline ContactForce evaluate(const ContactPoint& at, History& history, double time_step) const;
+
+  /// Damping ratio beta for which the cut law returns `restitution` (0.01 to 1). Integrates the
+  /// collision of two bodies in scaled form; relative error of the restitution below 1e-4. Local.
+  static double damping_for(double restitution);
+
+ private:
+  double young_ = 0.0;     // E* [Pa]
+  double shear_ = 0.0;     // G* [Pa]
+  double damping_ = 0.0;   // 2 sqrt(5/6) beta [1]
+  double friction_ = 0.0;  // [1]
+  // sqrt(St/Sn), which is the same in every contact: 2 sqrt(G*/E*).
+  double tangential_share_ = 0.0;
+};
+
+inline ContactForce HertzMindlin::evaluate(const ContactPoint& at, History& history,
+                                           double time_step) const {
+  const double patch = std::sqrt(at.radius * at.overlap);
+  const double normal_stiffness = 2.0 * young_ * patch;
+  const double damping = damping_ * std::sqrt(normal_stiffness * at.mass);
+  ContactForce out;
+  out.normal = (2.0 / 3.0) * normal_stiffness * at.overlap - damping * at.normal_velocity;
+  out.normal = out.normal > 0.0 ? out.normal : 0.0;
+  out.stiffness = 8.0 * shear_ * patch;
+
+  // Turn the old spring into the new contact plane, keeping its length while the turn is small;
+  // what is left of a spring that stood almost upright on the plane tells no direction.
+  Vec3 spring = history.spring - dot(history.spring, at.normal) * at.normal;
+  const double before2 = norm2(history.spring);
+  const double after2 = norm2(spring);
+  double scale = 4.0 * after2 > before2 ? std::sqrt(before2 / after2) : 1.0;
+  if (patch < history.patch) scale *= patch / history.patch;
+  spring *= scale;
+  spring -= (out.stiffness * time_step) * at.slip_velocity;
+
+  const double limit = friction_ * out.normal;
+  const double length2 = norm2(spring);
+  if (length2 > limit * limit) {
+    spring *= limit / std::sqrt(length2);
+    out.tangential = spring;
+  } else {
+    out.tangential = spring - (tangential_share_ * damping) * at.slip_velocity;
+    const double total2 = norm2(out.tangential);
+    if (total2 > limit * limit) out.tangential *= limit / std::sqrt(total2);
+  }
+  history.spring = spring;
+  history.patch = patch;
+  return out;
+}
+
+}  // namespace grouser

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "engine/core/vec3.hpp"
+#include "engine/dem/cell_grid.hpp"
+
+namespace grouser {
+
+/// A surface of triangles with shared vertices, in the frame of its body.
+struct Mesh {
+  std::vector<Vec3> vertices;              ///< [m]
+  std::vector<std::array<int, 3>> facets;  ///< vertex numbers
+
+  /// @throws ConfigError when a facet has no area, names a vertex that is not there or the mesh is
+  /// empty; `name` says whose mesh it is. Local.
+  void check(const std::string& name) const;
+};
+
+/// Reads an STL surface, text or binary; vertices at the same place become one.
+/// @param scale length of one unit of the file [m]
+/// @throws ConfigError when the file cannot be read or holds no usable surface. Local.
+Mesh read_stl(const std::filesystem::path& file, double scale);
+
+/// The point of a facet nearest to a given point, and where on the facet it lies.
+struct NearestPoint {
+  Vec3 point;
+  /// Which vertices span the feature the point lies on: all three for the inside, two for an edge,
+  /// one for a corner (bit k = vertex k of the facet).
+  unsigned feature = 0;
+};
+
+/// Nearest point of the triangle a, b, c to p. Local.
+NearestPoint nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// Where a sphere touches a mesh.
+struct MeshTouch {
+  int facet = 0;
+  Vec3 point;             ///< nearest point of the surface, body frame [m]
+  double distance = 0.0;  ///< from the centre [m]
+};
+
+/// Finds the touches of spheres with one mesh. A sphere touches where its distance to the surface
+/// has a local minimum, so an edge shared by facets counts once and a flat wall of many facets acts
+/// as one plane.
+class MeshSearch {
+ public:
+  /// @param reach largest radius, plus skin, that will be asked for [m]
+  MeshSearch(Mesh mesh, double reach);
+
+  const Mesh& mesh() const { return mesh_; }
+
+  /// Touches of a sphere, by rising facet number; appended to `touches`. Local.
+  void touches_of(const Vec3& centre, double radius, std::vector<MeshTouch>& touches) const;
+
+  /// Whether the surface could come within `reach` (as constructed) of a point of the body frame.
+  /// @param turns the body turns about its y axis: then the ring it sweeps is tested. Local.
+  bool may_be_near(const Vec3& point, bool turns) const;
+
+  /// Whether two facets share a vertex. Local.
+  bool are_neighbours(int first, int second) const;
+
+ private:
+  struct Candidate {
+    MeshTouch touch;
+    unsigned feature;
+  };
+  bool lies_on(const Candidate& candidate, int facet) const;
+
+  Mesh mesh_;
+  Vec3 low_;
+  Vec3 high_;
+  double ring_ = 0.0;  // largest distance from the y axis that is within reach of the surface
+  CellGrid grid_;
+  std::vector<std::uint32_t> start_;  // of each cell's facets
+  std::vector<int> members_;
+};
+
+}  // namespace grouser

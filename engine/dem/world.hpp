@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/core/communicator.hpp"
+#include "engine/core/decomposition.hpp"
+#include "engine/core/halo.hpp"
+#include "engine/core/state_io.hpp"
+#include "engine/dem/body.hpp"
+#include "engine/dem/body_contacts.hpp"
+#include "engine/dem/pair_contacts.hpp"
+
+namespace grouser {
+
+/// What a world of grains is made with.
+struct WorldSettings {
+  Vec3 low;  ///< corners of the region that grains may be in [m]
+  Vec3 high;
+  double gravity = 9.81;        ///< along -z [m s-2]
+  double time_step = 0.0;       ///< [s]
+  double largest_radius = 0.0;  ///< [m]
+  double skin = 0.0;            ///< margin of the neighbour list [m]; costs time, not accuracy
+  std::string law = "hertz_mindlin";
+  std::string rolling = "none";
+  Solid grain;
+  Surface grain_grain;
+};
+
+/// What went wrong in a step, agreed by all ranks; the worst wins.
+enum class Fault { kNone = 0, kLostParticle = 1, kNotANumber = 2 };
+
+/// Grains and rigid bodies moving under contact forces and gravity.
+///
+/// Leapfrog: velocities live half a step behind positions; damping forces use them as they are
+/// (first order in the time step, the rest second order). The trajectory is the same bit for bit
+/// on any number of ranks, for any skin and across save_state / load_state at any step.
+class World : public Stateful {
+ public:
+  World(const Communicator& ranks, const WorldSettings& settings);
+
+  /// Adds a grain on this rank; it moves to its owner at the next step. Ids must be 0 ... N-1 over
+  /// all ranks. Local.
+  void add_particle(const Particle& particle);
+
+  /// Adds a body; the same on every rank, before the first step. @return its number. Local.
+  std::size_t add_body(const std::string& name, Mesh mesh, const Solid& solid,
+                       const Surface& surface, bool turns);
+  std::size_t bodies() const { return bodies_.size(); }
+  Body& body(std::size_t number) { return bodies_[number]; }
+  const Body& body(std::size_t number) const { return bodies_[number]; }
+
+  /// Changes the surface of grains against each other; contact histories stay. Local.
+  void set_grain_surface(const Surface& surface);
+
+  struct StepResult {
+    Fault fault = Fault::kNone;
+    double max_overlap = 0.0;  ///< over the (smaller) radius [1]
+    double request = 0.0;      ///< largest of the ranks' requests
+  };
+  /// Forces at the present positions, then grains move on by one time step; bodies stay for the
+  /// caller to move. `request` lets ranks agree on something in the same message. Collective.
+  StepResult step(double request = 0.0);
+
+  /// Force and moment of all grains on a body in the last step. Local.
+  const BodyLoad& load(std::size_t body) const { return loads_[body]; }
+
+  /// Sum of translational and rotational kinetic energy of all grains [J]. Collective.
+  double kinetic_energy() const;
+  std::int64_t contacts() const;        ///< touching contacts, pairs and bodies. Collective.
+  std::int64_t particle_count() const;  ///< Collective.
+
+  /// Grains of this rank.
+  std::size_t owned() const { return owned_; }
+  const std::vector<Particle>& particles() const { return particles_; }
+  /// Position at the start of the run, for displacements [m].
+  const std::vector<Vec3>& origins() const { return origins_; }
+  /// Makes the present positions the origins. Local.
+  void reset_origins();
+
+  const Communicator& ranks() const { return ranks_; }
+  const WorldSettings& settings() const { return settings_; }
+
+  void save_state(State& state) const override;
+  void load_state(const State& state) override;
+
+ private:
+  void rebuild();
+  void migrate(ContactRecords& pair_records, ContactRecords& body_records);
+  void sort_owned(ContactRecords& pair_records, ContactRecords& body_records);
+  ContactRecords body_records() const;
+  double move_owned();
+  double displacement() const;
+  bool has_lost_particle() const;
+  void load_particles(const State& state);
+  void load_contacts(const State& state);
+
+  Communicator ranks_;
+  WorldSettings settings_;
+  Decomposition columns_;
+  Halo halo_;
+  std::vector<Particle> particles_;  // owned, then ghosts
+  std::vector<Vec3> origins_;
+  std::size_t owned_ = 0;
+  PairContacts pairs_;
+  std::vector<Body> bodies_;
+  std::vector<BodyContacts> body_contacts_;
+  std::vector<BodyLoad> loads_;
+  std::vector<Vec3> force_;
+  std::vector<Vec3> moment_;
+  // Histories that wait for the first list after load_state.
+  std::optional<ContactRecords> waiting_pairs_;
+  std::optional<ContactRecords> waiting_bodies_;
+  std::vector<Vec3> built_at_;  // positions when the list was made
+  bool must_rebuild_ = true;
+  double moved_ = 0.0;       // bound of grain displacement since then [m]
+  double near_moved_ = 0.0;  // bound of grain against body displacement since find_near [m]
+};
+
+}  // namespace grouser

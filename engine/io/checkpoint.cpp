@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/io/checkpoint.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "base/atomic_file.hpp"
+#include "base/errors.hpp"
+#include "base/hash.hpp"
+#include "engine/core/agree.hpp"
+#include "engine/io/checkpoint_file.hpp"
+
+namespace grouser {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::size_t bytes_of(const State& state) {
+  std::size_t bytes = 0;
+  for (const StateTable& table : state)
+    bytes += table.integers.size() * sizeof(std::int64_t) + table.reals.size() * sizeof(double);
+  return bytes;
+}
+
+// Headers and attributes of a file, beside its data.
+constexpr std::uintmax_t kFileOverhead = 256 << 10;
+
+}  // namespace
+
+State read_checkpoint(const Communicator& ranks, const fs::path& directory,
+                      const CheckpointManifest& manifest) {
+  const fs::path file = directory / manifest.file;
+  State state;
+  std::string failure = agreed_failure(ranks, [&] {
+    std::error_code error;
+    const auto size = fs::file_size(file, error);
+    if (error || static_cast<std::int64_t>(size) != manifest.bytes)
+      throw FormatError(file.string() + " has not the size its manifest tells");
+  });
+  // Only a file of the right size is opened by all ranks together.
+  if (failure.empty())
+    failure = agreed_failure(ranks, [&] { state = read_state_file(ranks, file); });
+  if (failure.empty() && hex(hash_state(ranks, state)) != manifest.state_hash)
+    failure = file.string() + " does not have the hash its manifest tells";
+  if (!failure.empty()) throw FormatError(failure);
+  return state;
+}
+
+CheckpointStore::CheckpointStore(const Communicator& ranks, const fs::path& directory)
+    : ranks_(ranks), directory_(directory) {
+  on_first_rank(ranks_, [&] { fs::create_directories(directory_); });
+}
+
+CheckpointManifest CheckpointStore::write_data(State state, CheckpointManifest manifest) {
+  for (StateTable& table : state) sort_rows(ranks_, table);
+  manifest.state_hash = hex(hash_state(ranks_, state));
+  const std::int64_t bytes = ranks_.sum(static_cast<std::int64_t>(bytes_of(state)));
+  std::string name;
+  if (ranks_.rank() == 0) {
+    char number[24];
+    std::snprintf(number, sizeof number, "%012lld", static_cast<long long>(manifest.step));
+    name = std::string("step_") + number;
+    // What a killed attempt left under the same name is not touched.
+    for (int again = 1; fs::exists(directory_ / (name + ".h5")); ++again)
+      name = name.substr(0, name.find('-')) + "-" + std::to_string(again);
+  }
+  name = ranks_.from_first(name + ".h5");
+  manifest.file = name;
+  const fs::path file = directory_ / name;
+
+  // Asking first keeps a full disk away from the file library, which does not survive one.
+  std::string failure = agreed_failure(ranks_, [&] {
+    if (ranks_.rank() == 0)
+      check_room(directory_, static_cast<std::uintmax_t>(bytes) + kFileOverhead);
+  });
+  if (failure.empty())
+    failure = agreed_failure(ranks_, [&] { write_state_file(ranks_, file, state, manifest); });
+  if (failure.empty())
+    failure = agreed_failure(ranks_, [&] {
+      if (ranks_.rank() == 0) sync_path(file);
+      manifest.bytes = static_cast<std::int64_t>(fs::file_size(file));
+    });
+  if (failure.empty()) {
+    state.clear();
+    try {
+      read_checkpoint(ranks_, directory_, manifest);
+    } catch (const FormatError& error) {
+      failure = error.what();
+    }
+  }
+  if (!failure.empty()) {
+    discard(manifest);
+    throw StorageError("checkpoint at step " + std::to_string(manifest.step) +
+                       " could not be written: " + failure);
+  }
+  return manifest;
+}
+
+void CheckpointStore::publish(const CheckpointManifest& manifest) {
+  const std::string failure = agreed_failure(ranks_, [&] {
+    if (ranks_.rank() == 0)
+      write_atomic((directory_ / manifest.file).replace_extension(".json"), to_json(manifest));
+  });
+  if (failure.empty()) return;
+  discard(manifest);
+  throw StorageError(failure);
+}
+
+void CheckpointStore::discard(const CheckpointManifest& manifest) {
+  if (ranks_.rank() == 0) {
+    std::error_code ignored;
+    fs::remove(directory_ / manifest.file, ignored);
+  }
+  ranks_.barrier();
+}
+
+std::vector<CheckpointManifest> CheckpointStore::manifests() const {
+  std::vector<CheckpointManifest> all;
+  for (const auto& entry : fs::directory_iterator(directory_)) {
+    if (entry.path().extension() != ".json") continue;
+    try {
+      const auto text = read_file(entry.path());
+      if (text) all.push_back(manifest_from_json(*text, entry.path().string()));
+    } catch (const FormatError& error) {
+      spdlog::warn("io unreadable manifest passed over: {}", error.what());
+    }
+  }
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
+    return std::tie(b.step, b.file) < std::tie(a.step, a.file);
+  });
+  return all;
+}
+
+std::optional<CheckpointStore::Loaded> CheckpointStore::load_newest(const std::string& case_key) {
+  // Rank 0 alone looks, so that all ranks try the same files.
+  std::string list;
+  on_first_rank(ranks_, [&] {
+    for (const CheckpointManifest& m : manifests())
+      if (m.case_key == case_key) list += to_json(m) + '\0';
+  });
+  list = ranks_.from_first(list);
+  bool any = false;
+  for (std::size_t from = 0; from < list.size();) {
+    const std::size_t to = list.find('\0', from);
+    const CheckpointManifest manifest =
+        manifest_from_json(list.substr(from, to - from), directory_.string());
+    from = to + 1;
+    any = true;
+    try {
+      return Loaded{manifest, read_checkpoint(ranks_, directory_, manifest)};
+    } catch (const FormatError& error) {
+      if (ranks_.rank() != 0) continue;
+      spdlog::warn("io damaged checkpoint passed over: {}", error.what());
+      std::error_code ignored;
+      const fs::path mark = (directory_ / manifest.file).replace_extension(".json");
+      fs::rename(mark, fs::path(mark).replace_extension(".bad"), ignored);
+    }
+  }
+  if (any) throw FormatError("every checkpoint in " + directory_.string() + " is damaged");
+  return std::nullopt;
+}
+
+void CheckpointStore::retain(std::size_t keep) {
+  on_first_rank(ranks_, [&] {
+    const std::vector<CheckpointManifest> all = manifests();
+    for (std::size_t i = keep; i < all.size(); ++i) {
+      const fs::path file = directory_ / all[i].file;
+      std::error_code ignored;
+      // The manifest goes first: what it names must exist as long as it does.
+      fs::remove(fs::path(file).replace_extension(".json"), ignored);
+      fs::remove(file, ignored);
+    }
+  });
+}
+
+}  // namespace grouser

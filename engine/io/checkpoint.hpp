@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "base/run_contract.hpp"
+#include "engine/core/communicator.hpp"
+#include "engine/core/state_io.hpp"
+
+namespace grouser {
+
+/// Checkpoints of one run: HDF5 files that are complete or do not exist.
+/// Format: docs/reference/formats/checkpoint.md.
+///
+/// A checkpoint is a new file, written, closed, synced, opened again and compared with the hash of
+/// what was meant; its manifest, written last and atomically, makes it exist. So neither a kill at
+/// any moment nor a full disk can harm the one before.
+class CheckpointStore {
+ public:
+  /// @param directory the run's checkpoint directory; made when missing
+  CheckpointStore(const Communicator& ranks, const std::filesystem::path& directory);
+
+  /// Writes a checkpoint; `manifest` names case, step and time, the rest is filled in and returned.
+  /// @param may_publish asked on rank 0 right before the manifest is written; on false nothing
+  ///        remains and nothing is returned
+  /// @throws StorageError on every rank; the checkpoints before stay. Collective.
+  template <class MayPublish>
+  std::optional<CheckpointManifest> write(State state, CheckpointManifest manifest,
+                                          const MayPublish& may_publish) {
+    manifest = write_data(std::move(state), std::move(manifest));
+    const bool allowed = ranks_.from_first(ranks_.rank() == 0 ? may_publish() : 0) != 0;
+    if (!allowed) {
+      discard(manifest);
+      return std::nullopt;
+    }
+    publish(manifest);
+    return manifest;
+  }
+
+  struct Loaded {
+    CheckpointManifest manifest;
+    State state;
+  };
+  /// The newest checkpoint of `case_key` that is whole; damaged ones are marked and passed over.
+  /// Nothing when there is none at all. @throws FormatError when all there are are damaged.
+  /// Collective.
+  std::optional<Loaded> load_newest(const std::string& case_key);
+
+  /// Removes all but the newest `keep` checkpoints. Collective.
+  void retain(std::size_t keep);
+
+ private:
+  CheckpointManifest write_data(State state, CheckpointManifest manifest);
+  void publish(const CheckpointManifest& manifest);
+  void discard(const CheckpointManifest& manifest);
+  std::vector<CheckpointManifest> manifests() const;
+
+  Communicator ranks_;
+  std::filesystem::path directory_;
+};
+
+/// Reads the file of `manifest` in `directory` and checks every table's hash.
+/// @throws FormatError on every rank when it is not what the manifest says. Collective.
+State read_checkpoint(const Communicator& ranks, const std::filesystem::path& directory,
+                      const CheckpointManifest& manifest);
+
+}  // namespace grouser

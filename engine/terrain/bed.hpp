@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/case.hpp"
+#include "engine/dem/world.hpp"
+
+namespace grouser {
+
+/// Draws grain diameters from a size curve.
+class SizeCurve {
+ public:
+  /// Between two points of the curve diameters are spread evenly by number. A curve by mass is
+  /// turned into one by number so that each piece holds its mass. Diameters include coarse
+  /// graining.
+  explicit SizeCurve(const GrainsCase& grains);
+
+  /// Diameter [m] below which a fraction `unit` (0 to 1) of all grains is.
+  double diameter_at(double unit) const;
+  double smallest() const { return diameter_.front(); }
+  double largest() const { return diameter_.back(); }
+  double mean() const;         ///< by number [m]
+  double mean_volume() const;  ///< of a grain [m3]
+
+ private:
+  std::vector<double> diameter_;
+  std::vector<double> finer_;  // by number
+};
+
+/// Smallest time in which a shear wave rounds a grain, Rayleigh's surface wave [s].
+/// Source: Sheng, Lawrence, Briscoe, Thornton 2004, eq. 5.
+double rayleigh_time(const GrainsCase& grains);
+
+/// Time step of a case [s]: given, or its fraction of the Rayleigh time. Local.
+double time_step_of(const Case& input);
+
+/// Places of the random loose filling: a lattice of cells as wide as the largest grain, filled from
+/// the floor up, each with one grain at a random place inside. Sizes and places depend on seed and
+/// id alone, so that every rank can make any grain without the others.
+class Filling {
+ public:
+  explicit Filling(const Case& input);
+  std::int64_t count() const { return count_; }
+  double height() const { return height_; }  ///< of the loose column [m]
+  Particle particle(std::int64_t id) const;
+
+ private:
+  double diameter(std::int64_t id) const;
+
+  SizeCurve sizes_;
+  std::uint64_t seed_;
+  double density_;
+  Vec3 cell_;
+  std::int64_t along_x_ = 0;
+  std::int64_t along_y_ = 0;
+  std::int64_t count_ = 0;
+  double height_ = 0.0;
+};
+
+/// Kinetic energy per grain below which the bed of a case counts as settled [J].
+double settled_energy(const Case& input);
+
+/// Mean height of the undisturbed surface in a strip of the bed [m]: mean over square columns, one
+/// largest grain wide, of the highest grain top in each. Collective.
+double surface_level(const World& world, double x_low, double x_high, double y_low, double y_high);
+
+}  // namespace grouser

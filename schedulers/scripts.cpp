@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "schedulers/scripts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "base/errors.hpp"
+#include "schedulers/scheduler.hpp"
+#include "schedulers/shell.hpp"
+
+namespace grouser {
+namespace {
+
+// Word that stands for the number of ranks in a launcher.
+constexpr const char* kRanksWord = "{ranks}";
+
+std::string clock_text(double seconds) {
+  const auto whole = static_cast<long long>(std::ceil(seconds));
+  char text[48];
+  std::snprintf(text, sizeof text, "%02lld:%02lld:%02lld", whole / 3600, whole / 60 % 60,
+                whole % 60);
+  return text;
+}
+
+std::string slurm_clock(double seconds) {
+  const auto whole = static_cast<long long>(std::ceil(seconds));
+  const long long days = whole / 86400;
+  return std::to_string(days) + "-" + clock_text(static_cast<double>(whole % 86400));
+}
+
+std::string amount_of(const std::string& memory) {
+  return memory.substr(0, memory.find_first_not_of("0123456789"));
+}
+
+// Upper-case first letter of the unit, "" when there is none.
+std::string unit_of(const std::string& memory) {
+  const auto at = memory.find_first_not_of("0123456789");
+  return at == std::string::npos
+             ? ""
+             : std::string(1,
+                           static_cast<char>(std::toupper(static_cast<unsigned char>(memory[at]))));
+}
+
+std::string launch_line(const JobSpec& spec, const std::string& backend_launcher) {
+  std::string line;
+  if (spec.launcher.empty()) {
+    line = backend_launcher;
+  } else {
+    for (std::string word : split_words(spec.launcher)) {
+      const auto at = word.find(kRanksWord);
+      if (at != std::string::npos)
+        word.replace(at, std::string(kRanksWord).size(), std::to_string(spec.ranks));
+      line += (line.empty() ? "" : " ") + shell_quote(word);
+    }
+  }
+  return line + (line.empty() ? "" : " ") + shell_join(spec.engine);
+}
+
+// What every job script does after its directives; @WORDS@ are filled in.
+constexpr const char* kBody = R"sh(@SETUP@
+token=@TOKEN@
+cd -- @DIRECTORY@ || exit 40
+@PROLOGUE@
+owns_run() {
+  [ "$(cat fence)" = "$token" ]
+}
+
+# The batch system wants the job to end: the engine is asked by its stop file, unless the run has
+# gone over to another attempt.
+ask_to_stop() {
+  if owns_run && [ ! -e stop ]; then
+    echo signal >stop
+  fi
+}
+trap ask_to_stop TERM USR1
+
+# The word of this script about itself; readers see a whole record or none.
+record() {
+  printf '{"token": "%s", "job": "%s", "host": "%s", "code": %d}\n' \
+    "$token" "@JOB@" "$(uname -n)" "$2" >"attempts/$token.$1.tmp" &&
+    mv -f "attempts/$token.$1.tmp" "attempts/$token.$1"
+}
+
+if ! owns_run; then
+  echo "superseded: another attempt owns this run" >&2
+  exit 22
+fi
+record started -1
+@LAUNCH@ &
+engine=$!
+code=127
+# A trapped signal ends `wait` early: wait again until the engine is gone.
+while kill -0 "$engine" 2>/dev/null; do
+  wait "$engine"
+  code=$?
+done
+wait "$engine" 2>/dev/null
+last=$?
+[ "$last" -eq 127 ] || code=$last
+record exit "$code"
+exit "$code"
+)sh";
+
+struct Backend {
+  std::string job_variable;  ///< where the environment names the job
+  std::string prologue;      ///< lines after the change of directory
+  std::string launcher;      ///< words before the engine unless the user gives others
+};
+
+std::string body(const JobSpec& spec, const Backend& backend) {
+  return fill(kBody,
+              {{"SETUP", spec.setup_file.empty() ? "" : "\n. " + shell_quote(spec.setup_file)},
+               {"TOKEN", spec.token},
+               {"DIRECTORY", shell_quote(spec.run_directory.string())},
+               {"PROLOGUE", backend.prologue},
+               {"JOB", backend.job_variable},
+               {"LAUNCH", launch_line(spec, backend.launcher)}});
+}
+
+std::string head_comment(const JobSpec& spec) {
+  return "# Attempt " + spec.token + " of run " + spec.label + ", campaign " + spec.campaign +
+         "; written by grouser.\n";
+}
+
+std::string pbs_chunk(std::int64_t count, std::int64_t ranks, const JobSpec& spec) {
+  std::string text = std::to_string(count) + ":ncpus=" + std::to_string(ranks) +
+                     ":mpiprocs=" + std::to_string(ranks);
+  if (spec.memory.empty()) return text;
+  std::string unit = unit_of(spec.memory);
+  unit =
+      unit.empty()
+          ? "mb"
+          : std::string(1, static_cast<char>(std::tolower(static_cast<unsigned char>(unit[0])))) +
+                "b";
+  return text + ":mem=" + amount_of(spec.memory) + unit;
+}
+
+// Ranks spread evenly; when they do not divide, the first nodes get one more.
+std::string pbs_select(const JobSpec& spec) {
+  if (spec.nodes == 0) return pbs_chunk(spec.ranks, 1, spec);
+  const std::int64_t each = spec.ranks / spec.nodes;
+  const std::int64_t more = spec.ranks % spec.nodes;
+  if (more == 0) return pbs_chunk(spec.nodes, each, spec);
+  return pbs_chunk(more, each + 1, spec) + "+" + pbs_chunk(spec.nodes - more, each, spec);
+}
+
+}  // namespace
+
+std::string make_local_script(const JobSpec& spec) {
+  // One rank needs no launcher, and does without its start-up time.
+  const std::string launcher =
+      spec.ranks == 1 ? ""
+                      : "mpirun --oversubscribe --bind-to none -n " + std::to_string(spec.ranks);
+  return "#!/bin/bash\n" + head_comment(spec) +
+         body(spec,
+              {"${GROUSER_JOB:-}",
+               "export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1\n", launcher});
+}
+
+std::string make_slurm_script(const JobSpec& spec) {
+  std::string text = "#!/bin/bash\n";
+  const auto option = [&](const std::string& name, const std::string& value) {
+    if (!value.empty()) text += "#SBATCH --" + name + "=" + value + "\n";
+  };
+  option("job-name", job_name(spec.token));
+  option("ntasks", std::to_string(spec.ranks));
+  if (spec.nodes > 0) option("nodes", std::to_string(spec.nodes));
+  if (spec.walltime > 0.0) {
+    option("time", slurm_clock(spec.walltime));
+    option("signal", "B:USR1@" + std::to_string(std::lround(0.5 * stop_margin(spec.walltime))));
+  }
+  if (!spec.memory.empty()) option("mem", amount_of(spec.memory) + unit_of(spec.memory));
+  option("partition", spec.partition);
+  option("account", spec.account);
+  option("qos", spec.qos);
+  // Relative to the run directory, which sbatch is given as --chdir: a path here would need
+  // quoting.
+  option("output", attempt_files::log(spec.token));
+  option("open-mode", "append");
+  text += "#SBATCH --no-requeue\n";
+  return text + head_comment(spec) +
+         body(spec, {"${SLURM_JOB_ID:-}", "", "mpirun -n " + std::to_string(spec.ranks)});
+}
+
+std::string make_pbs_script(const JobSpec& spec) {
+  std::string text = "#!/bin/bash\n";
+  const auto option = [&](const std::string& name, const std::string& value) {
+    text += "#PBS -" + name + " " + value + "\n";
+  };
+  option("N", job_name(spec.token));
+  option("S", "/bin/bash");
+  option("l", "select=" + pbs_select(spec));
+  if (spec.nodes > 0) option("l", "place=scatter");
+  if (spec.walltime > 0.0) option("l", "walltime=" + clock_text(spec.walltime));
+  if (!spec.partition.empty()) option("q", spec.partition);
+  if (!spec.account.empty()) option("A", spec.account);
+  option("j", "oe");
+  option("r", "n");
+  // PBS copies its output file only at the end; the log is to be read while the job runs.
+  return text + head_comment(spec) +
+         body(spec, {"${PBS_JOBID:-}", "exec >>" + attempt_files::log(spec.token) + " 2>&1\n",
+                     "mpirun -n " + std::to_string(spec.ranks) + " --hostfile \"$PBS_NODEFILE\""});
+}
+
+double stop_margin(double walltime) {
+  return std::min(std::clamp(0.05 * walltime, 30.0, 600.0), 0.5 * walltime);
+}
+
+std::string job_name(const std::string& token) { return "g" + token; }
+
+std::string attempt_files::script(const std::string& token) {
+  return std::string(kDirectory) + "/" + token + ".sh";
+}
+std::string attempt_files::log(const std::string& token) {
+  return std::string(kDirectory) + "/" + token + ".log";
+}
+std::string attempt_files::started(const std::string& token) {
+  return std::string(kDirectory) + "/" + token + ".started";
+}
+std::string attempt_files::exit(const std::string& token) {
+  return std::string(kDirectory) + "/" + token + ".exit";
+}
+
+JobRecord job_record_from_json(const std::string& text, const std::string& source) {
+  try {
+    const auto json = nlohmann::json::parse(text);
+    JobRecord record;
+    json.at("token").get_to(record.token);
+    json.at("job").get_to(record.job);
+    json.at("host").get_to(record.host);
+    json.at("code").get_to(record.code);
+    return record;
+  } catch (const nlohmann::json::exception& error) {
+    throw FormatError(source + ": not a job record (" + error.what() + ")");
+  }
+}
+
+}  // namespace grouser

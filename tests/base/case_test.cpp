@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/case.hpp"
+
+#include <gtest/gtest.h>
+
+namespace grouser {
+namespace {
+
+const char* const kGood = R"(
+box: {length: 1.2 m, width: 53 cm, depth: 22 cm}
+grains:
+  density: 2650 kg/m3
+  size_curve: [{diameter: 0.76 mm, finer: 0}, {diameter: 2.29 mm, finer: 1}]
+  coarse_graining: 12
+contact:
+  grain_grain: {restitution: 0.5, friction: 0.5}
+  grain_box: {restitution: 0.5, friction: 0.3}
+bed: {depth: 20 cm}
+wheel:
+  diameter: 71.27 cm
+  width: 17.78 cm
+  load: 1922 N
+  forward_speed: 1.67 m/s
+  travel: 40 cm
+  average_travel: 10 cm
+)";
+
+std::vector<Problem> problems_of(const std::string& text) {
+  std::vector<Problem> problems;
+  read_case(parse_yaml(text, "case.yaml"), problems);
+  return problems;
+}
+
+TEST(Case, AGoodCaseHasNoProblems) {
+  for (const Problem& problem : problems_of(kGood)) ADD_FAILURE() << problem.text();
+}
+
+TEST(Case, WrittenCaseReadsBackToTheSameBits) {
+  std::vector<Problem> problems;
+  const Case first = read_case(parse_yaml(kGood, "a"), problems);
+  const Case second = read_case(parse_yaml(emit_yaml(write_case(first)), "b"), problems);
+  EXPECT_TRUE(problems.empty());
+  EXPECT_EQ(content_key(first), content_key(second));
+  EXPECT_EQ(first.wheel.diameter, second.wheel.diameter);
+}
+
+TEST(Case, KeyFollowsPhysicsAndNotOutput) {
+  std::vector<Problem> problems;
+  const Case first = read_case(parse_yaml(kGood, "a"), problems);
+  Case other = first;
+  other.output.series_interval = 1.0;
+  EXPECT_EQ(content_key(first), content_key(other));
+  other.wheel.slip = 0.2;
+  EXPECT_NE(content_key(first), content_key(other));
+  EXPECT_EQ(content_key(bed_case(first)), content_key(bed_case(other)));
+}
+
+TEST(Case, DurationIsSettlingPlusTravelWithItsRamp) {
+  std::vector<Problem> problems;
+  Case input = read_case(parse_yaml(kGood, "a"), problems);
+  input.wheel.settle_time = 0.1;
+  input.wheel.forward_speed = 2.0;
+  input.wheel.ramp_time = 0.02;
+  input.wheel.travel = 0.4;
+  EXPECT_DOUBLE_EQ(run_duration(input), 0.1 + 0.01 + 0.2);
+  input.wheel.travel = 0.005;  // shorter than the ramp's 0.02 m: s = v t^2 / (2 T)
+  EXPECT_DOUBLE_EQ(run_duration(input), 0.1 + 0.01);
+  EXPECT_EQ(run_duration(bed_case(input)), 0.0);
+}
+
+TEST(Case, TenMistakesAreReportedInOnePass) {
+  const std::vector<Problem> problems = problems_of(R"(
+gravity: 9.81
+box: {length: 1.2 m, width: -53 cm}
+grains:
+  densty: 2650 kg/m3
+  size_curve: [{diameter: 0.76 s, finer: 0}, {diameter: 2.29 mm, finer: 1.5}]
+contact:
+  rolling: elastic_plastik
+  grain_grain: {restitution: 0, friction: 0.5}
+  grain_box: 3
+bed: {depth: twenty cm}
+)");
+  std::string all;
+  for (const Problem& problem : problems) all += problem.text() + "\n";
+  for (const char* part :
+       {"case.yaml:2:10: gravity: '9.81' has no unit", "box.width: '-53 cm' is out of range",
+        "box.depth: is missing", "grains.density: is missing",
+        "grains.densty: unknown key; did you mean 'density'?",
+        "size_curve[0].diameter: unit 's' cannot be turned into 'm'",
+        "size_curve[1].finer: '1.5' is out of range",
+        "contact.rolling: 'elastic_plastik' is not one of its words; did you mean "
+        "'elastic_plastic'?",
+        "contact.grain_grain.restitution: '0' is out of range", "contact.grain_box: must be a map",
+        "bed.depth: 'twenty cm' is not a number"})
+    EXPECT_NE(all.find(part), std::string::npos) << part << " is missing from\n" << all;
+}
+
+TEST(Case, RulesBetweenValuesAreChecked) {
+  std::string text = kGood;
+  text.replace(text.find("travel: 40 cm"), 13, "travel: 4 m  ");
+  const std::vector<Problem> problems = problems_of(text);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].text(),
+            "case.yaml:12:3: wheel: runs into the end wall; start, travel and a quarter of the "
+            "diameter must fit into the box length");
+}
+
+TEST(Case, AWheelInTheBackWallAndABedThinnerThanAGrainAreRefused) {
+  std::string text = kGood;
+  text += "  start: 0.1\n";
+  ASSERT_EQ(problems_of(text).size(), 1u);
+  EXPECT_NE(problems_of(text)[0].text().find("starts in the back wall"), std::string::npos);
+  text = kGood;
+  text.replace(text.find("depth: 20 cm"), 12, "depth: 20 mm");
+  ASSERT_EQ(problems_of(text).size(), 1u);
+  EXPECT_NE(problems_of(text)[0].text().find("less than one grain"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace grouser

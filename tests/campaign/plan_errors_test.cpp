@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "base/atomic_file.hpp"
+#include "campaign/plan/expand.hpp"
+#include "small_campaign.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+namespace grouser {
+namespace {
+
+// Messages of a campaign, one per line, with the directory cut off.
+std::string problems_of(const std::string& yaml, const std::string& site = "") {
+  TemporaryDirectory directory;
+  write_atomic(directory.path() / "c.yaml", yaml);
+  if (!site.empty()) write_atomic(directory.path() / "site.yaml", site);
+  try {
+    plan_campaign(directory.path() / "c.yaml", site.empty() ? "" : directory.path() / "site.yaml");
+  } catch (const ConfigError& error) {
+    std::string text = error.what();
+    const std::string prefix = directory.path().string() + "/";
+    for (auto at = text.find(prefix); at != std::string::npos; at = text.find(prefix))
+      text.erase(at, prefix.size());
+    return text;
+  }
+  return "";
+}
+
+std::size_t count_lines(const std::string& text) {
+  return text.empty() ? 0
+                      : static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1;
+}
+
+void expect_parts(const std::string& text, const std::vector<std::string>& parts) {
+  for (const std::string& part : parts)
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\nis missing from\n" << text;
+}
+
+TEST(CampaignErrors, FifteenMistakesAreNamedAtOnceWithLineAndColumn) {
+  const std::string text = problems_of(R"(grouser: 1
+campaign: bad name!
+schedular: local
+scheduler: slrum
+resources:
+  ranks: none
+  walltime: 8
+  partition: "a b"
+  memory: lots
+chunks: {count: 2, simulated_time: 0.1 s}
+case:
+  box: {length: 40 cm, width: 12 cm, depth: 10 cm}
+  grains:
+    density: 2650
+    size_curve: [{diameter: 0.4 mm, finer: 0 %}, {diameter: 0.8 mm, finer: 100 %}]
+  contact:
+    grain_grain: {restitution: 0.5, friction: 0.5}
+    grain_box: {restitution: 0.5, friktion: 0.5}
+  bed: {depth: 6 cm}
+sweep:
+  - axis: slip
+    points:
+      - {label: -rf, set: {grains.seed: 1}}
+      - {label: b, set: {grains.sead: 2}}
+      - {label: b, set: {grains.seed: two}}
+)");
+  expect_parts(text,
+               {"c.yaml:2:11: campaign: 'bad name!' cannot be a name of a campaign",
+                "c.yaml:3:12: schedular: unknown key; did you mean 'scheduler'?",
+                "c.yaml:4:12: scheduler: 'slrum' is not one of its words; did you mean 'slurm'?",
+                "c.yaml:6:10: resources.ranks: 'none' is not a whole number",
+                "c.yaml:7:13: resources.walltime: '8' has no unit",
+                "c.yaml:8:14: resources.partition: has characters a scheduler does not take",
+                "c.yaml:9:11: resources.memory: is not an amount of memory",
+                "c.yaml:10:36: chunks.simulated_time: is given together with count",
+                "c.yaml:14:14: case.grains.density: '2650' has no unit",
+                "case.contact.grain_box.friction: is missing",
+                "case.contact.grain_box.friktion: unknown key; did you mean 'friction'?",
+                "c.yaml:23:17: sweep[0].points[0].label: '-rf' cannot be a label",
+                "c.yaml:24:39: case.grains.sead: unknown key; did you mean 'seed'?",
+                "'b' is given twice on axis slip",
+                "c.yaml:25:39: case.grains.seed: 'two' is not a whole number"});
+}
+
+TEST(CampaignErrors, AProblemOfManyRunsIsNamedOnce) {
+  std::string yaml = small_campaign(kTwoSlips);
+  yaml.replace(yaml.find("2650 kg/m3"), 10, "2650 kg   ");
+  EXPECT_EQ(count_lines(problems_of(yaml)), 1u) << problems_of(yaml);
+}
+
+TEST(CampaignErrors, RulesBetweenValuesAreCheckedForEveryRun) {
+  const std::string text = problems_of(small_campaign(R"(sweep:
+  - axis: t
+    points:
+      - {label: short, set: {wheel.travel: 4 cm}}
+      - {label: long, set: {wheel.travel: 4 m}}
+)"));
+  expect_parts(text, {"case.wheel: runs into the end wall"});
+}
+
+TEST(CampaignErrors, TwoPointsWithTheSameCaseAreRefused) {
+  const std::string text = problems_of(small_campaign(R"(sweep:
+  - axis: slip
+    points:
+      - {label: a, set: {wheel.slip: 20 %}}
+      - {label: b, set: {wheel.slip: 0.2}}
+)"));
+  EXPECT_EQ(text.find("c.yaml:26:9: sweep: run b is the same case as run a; points must differ"),
+            0u)
+      << text;
+}
+
+TEST(CampaignErrors, JoinedLabelsMustDiffer) {
+  const std::string text = problems_of(small_campaign(R"(sweep:
+  - axis: x
+    points:
+      - {label: a-b, set: {grains.seed: 1}}
+      - {label: a, set: {grains.seed: 2}}
+  - axis: y
+    points:
+      - {label: c, set: {wheel.slip: 1 %}}
+      - {label: b-c, set: {wheel.slip: 2 %}}
+)"));
+  expect_parts(text, {"two runs are labelled a-b-c"});
+}
+
+TEST(CampaignErrors, PathsThatLeadThroughAValueAreRefused) {
+  expect_parts(problems_of(small_campaign("sweep:\n  - axis: x\n    points:\n"
+                                          "      - {label: a, set: {bed.depth.top: 1 cm}}\n")),
+               {"'bed.depth.top' does not lead to a value"});
+}
+
+TEST(CampaignErrors, ABatchSchedulerNeedsAWalltime) {
+  expect_parts(problems_of(small_campaign("scheduler: slurm\n")),
+               {"has no walltime, and scheduler slurm needs one"});
+}
+
+TEST(CampaignErrors, WhatPbsCannotSayIsRefused) {
+  expect_parts(
+      problems_of(small_campaign("scheduler: pbs\nresources: {walltime: 1h, qos: fast}\n")),
+      {"has a qos, which PBS does not know"});
+  expect_parts(
+      problems_of(small_campaign("scheduler: pbs\nresources: {walltime: 1h, memory: 4G}\n")),
+      {"has memory per node but no nodes"});
+}
+
+TEST(CampaignErrors, AMistakeInASiteFileIsFoundThere) {
+  const std::string text =
+      problems_of(small_campaign(""), "grouser_site: 1\nresources:\n  walltime: 8 kg\nqueue: x\n");
+  expect_parts(text, {"site.yaml:3:13: resources.walltime: unit 'kg' cannot be turned into 's'",
+                      "site.yaml:4:8: queue: unknown key"});
+}
+
+TEST(CampaignErrors, MissingFilesAreNamed) {
+  expect_parts(problems_of(small_campaign(
+                   "resources: {setup_file: env.sh}\nsweep:\n  - axis: w\n    points:\n"
+                   "      - {label: a, set: {wheel.profile: stl, wheel.stl_file: w.stl}}\n")),
+               {"resources.setup_file: '", "env.sh' is not a file", "case.wheel.stl_file: '",
+                "w.stl' is not a file"});
+}
+
+TEST(CampaignErrors, AReportThatIsNoMapIsRefused) {
+  expect_parts(problems_of(small_campaign("report: yes please\n")), {"report: must be a map"});
+}
+
+TEST(CampaignErrors, TooManyCombinationsAreRefusedBeforeTheyAreMade) {
+  std::string sweep = "sweep:\n";
+  for (int axis = 0; axis < 6; ++axis) {
+    sweep += "  - axis: a" + std::to_string(axis) + "\n    points:\n";
+    for (int point = 0; point < 10; ++point)
+      sweep += "      - {label: p" + std::to_string(point) + ", set: {grains.seed: 1}}\n";
+  }
+  expect_parts(problems_of(small_campaign(sweep)), {"has more than 100000 combinations"});
+}
+
+}  // namespace
+}  // namespace grouser

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "campaign/store/store.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "base/errors.hpp"
+#include "campaign/drive/clock.hpp"
+#include "campaign/drive/lease_guard.hpp"
+#include "campaign/store/journal_mode.hpp"
+#include "schedulers/command.hpp"
+#include "schedulers/process.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+namespace grouser {
+namespace {
+
+const LeaseHolder kMe{"here", "boot", 1, 2, 0};
+
+NewRun bed_run() {
+  NewRun run;
+  run.row.label = "bed";
+  run.row.kind = RunKind::kBed;
+  run.row.directory = "beds/bed";
+  run.row.key = "k1";
+  run.chunk_ends = {std::nullopt};
+  return run;
+}
+
+NewRun wheel_run(const std::string& label) {
+  NewRun run;
+  run.row.label = label;
+  run.row.directory = "runs/" + label;
+  run.row.key = label;
+  run.row.axes = {{"slip", label}, {"seed", "s1"}};
+  run.bed_key = "k1";
+  run.chunk_ends = {0.1, 0.2, std::nullopt};
+  return run;
+}
+
+class Database : public ::testing::Test {
+ protected:
+  Database() {
+    store_.take_lease(kMe, [](const LeaseHolder&) { return false; });
+    store_.put_campaign({"name", "title", "/x/c.yaml", "settings", "/bin/engine", 12.5});
+    store_.add_runs({bed_run(), wheel_run("a"), wheel_run("b")});
+  }
+  AttemptRow start(const RunRow& run, const std::string& token) {
+    const ChunkRow chunk = store_.chunks(run.id).front();
+    AttemptRow attempt;
+    attempt.run = run.id;
+    attempt.chunk = chunk.id;
+    attempt.token = token;
+    return store_.add_attempt(attempt, run, chunk);
+  }
+  std::filesystem::path file() const { return directory_.path() / Store::kFileName; }
+
+  TemporaryDirectory directory_;
+  Store store_ = Store::open(file());
+};
+
+TEST_F(Database, RunsReadBackAsWritten) {
+  const Store reader = Store::open_read_only(file());
+  const auto runs = reader.runs();
+  ASSERT_EQ(runs.size(), 3u);
+  EXPECT_EQ(runs[0].kind, RunKind::kBed);
+  EXPECT_EQ(runs[0].bed, std::nullopt);
+  EXPECT_EQ(runs[2].bed, runs[0].id);
+  EXPECT_EQ(runs[2].label, "b");
+  ASSERT_EQ(runs[2].axes.size(), 2u);
+  EXPECT_EQ(runs[2].axes[0].axis, "slip");
+  EXPECT_EQ(runs[2].axes[1].label, "s1");
+  EXPECT_EQ(reader.chunks(runs[2].id).size(), 3u);
+  EXPECT_EQ(reader.campaign().created_at, 12.5);
+}
+
+TEST_F(Database, AttemptsReadBackAsWritten) {
+  AttemptRow attempt = start(store_.runs()[1], "t1");
+  EXPECT_EQ(attempt.number, 1);
+  attempt.state = State::kChunkDone;
+  attempt.code = 10;
+  attempt.has_outcome = true;
+  attempt.wall_seconds = 0.1;
+  attempt.state_hash = "abc";
+  Change change;
+  change.attempt = attempt;
+  store_.apply(change);
+  const AttemptRow back = store_.attempts().front();
+  EXPECT_EQ(back.code, 10);
+  EXPECT_TRUE(back.has_outcome);
+  EXPECT_EQ(back.wall_seconds, 0.1);
+  EXPECT_EQ(back.state_hash, "abc");
+  EXPECT_EQ(start(store_.runs()[1], "t2").number, 2);
+}
+
+TEST_F(Database, RefusesASecondActiveAttemptOfARun) {
+  start(store_.runs()[1], "t1");
+  EXPECT_THROW(start(store_.runs()[1], "t2"), StorageError);
+  EXPECT_EQ(store_.attempts().size(), 1u);
+  start(store_.runs()[2], "t3");  // of another run it is fine
+}
+
+TEST_F(Database, AChangeHappensWhollyOrNotAtAll) {
+  const RunRow run = store_.runs()[1];
+  Change change;
+  change.run = run;
+  change.run->state = State::kHeld;
+  change.chunk_after = store_.chunks(run.id).front();
+  change.chunk_after->position = 0;
+  change.attempt = AttemptRow{};  // there is no such attempt
+  EXPECT_ANY_THROW(store_.apply(change));
+  EXPECT_EQ(store_.run(run.id).state, State::kPlanned);
+  EXPECT_EQ(store_.chunks(run.id).size(), 3u);
+}
+
+TEST_F(Database, AnInsertedChunkMovesTheLaterOnesUp) {
+  const RunRow run = store_.runs()[1];
+  const auto before = store_.chunks(run.id);
+  Change change;
+  change.chunk_after = before[0];
+  change.chunk_after->position = 1;
+  store_.apply(change);
+  const auto after = store_.chunks(run.id);
+  ASSERT_EQ(after.size(), 4u);
+  EXPECT_EQ(after[0].id, before[0].id);
+  EXPECT_EQ(after[2].id, before[1].id);
+  EXPECT_EQ(after[3].id, before[2].id);
+  for (std::size_t i = 0; i < after.size(); ++i)
+    EXPECT_EQ(after[i].position, static_cast<std::int64_t>(i));
+  EXPECT_EQ(store_.chunks(store_.runs()[2].id).size(), 3u);
+}
+
+TEST_F(Database, WritingNeedsTheLease) {
+  const LeaseHolder other{"there", "boot", 9, 9, 0};
+  EXPECT_EQ(store_.take_lease(other, [](const LeaseHolder&) { return false; })->pid, 1);
+  Store thief = Store::open(file());
+  EXPECT_EQ(thief.take_lease(other, [](const LeaseHolder&) { return true; }), std::nullopt);
+  Change change;
+  change.run = store_.runs()[1];
+  EXPECT_THROW(store_.apply(change), LeaseLost);
+  EXPECT_NO_THROW(thief.apply(change));
+  store_.release_lease(kMe);  // is not ours any more: stays
+  EXPECT_TRUE(store_.take_lease(kMe, [](const LeaseHolder&) { return false; }).has_value());
+}
+
+TEST_F(Database, ALeaseOfADeadProcessIsTakenOver) {
+  store_.release_lease(kMe);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const ProcessId self = this_process();
+    Store own = Store::open(file());
+    own.take_lease({self.host, self.boot, self.pid, self.start, 0},
+                   [](const LeaseHolder&) { return false; });
+    ::_exit(0);
+  }
+  ::waitpid(child, nullptr, 0);
+  SystemClock clock;
+  EXPECT_NO_THROW(LeaseGuard(store_, clock, 0.0, false));
+}
+
+TEST_F(Database, ALeaseOfALivingProcessIsRespectedAndNamed) {
+  store_.release_lease(kMe);
+  SystemClock clock;
+  Store second = Store::open(file());
+  const ProcessId parent = [] {
+    ProcessId id = this_process();
+    id.pid = ::getppid();
+    id.start = process_line(id.pid)->start;
+    return id;
+  }();
+  second.take_lease({parent.host, parent.boot, parent.pid, parent.start, 0},
+                    [](const LeaseHolder&) { return false; });
+  try {
+    LeaseGuard guard(store_, clock, 0.0, false);
+    FAIL() << "took a lease that is held";
+  } catch (const CampaignBusy& busy) {
+    EXPECT_NE(std::string(busy.what()).find(std::to_string(parent.pid)), std::string::npos);
+  }
+}
+
+TEST_F(Database, QueriesReadAndNothingElse) {
+  const Store reader = Store::open_read_only(file());
+  const Table table = reader.query("SELECT label, chunks, bed FROM v_runs");
+  EXPECT_EQ(table.columns, (std::vector<std::string>{"label", "chunks", "bed"}));
+  ASSERT_EQ(table.rows.size(), 3u);
+  EXPECT_EQ(table.rows[1], (std::vector<std::string>{"a", "3", "bed"}));
+  EXPECT_EQ(table.is_text[1], (std::vector<bool>{true, false, true}));
+  for (const char* sql :
+       {"DELETE FROM run", "UPDATE run SET state = 'HELD'", "DROP VIEW v_runs",
+        "ATTACH 'x.db' AS x", "PRAGMA journal_mode", "SELECT 1; DELETE FROM run", "BEGIN",
+        "CREATE TEMP TABLE t (x)", "VACUUM INTO 'x.db'", "SELECT nothing FROM v_runs", ""})
+    EXPECT_THROW(reader.query(sql), std::invalid_argument) << sql;
+}
+
+TEST_F(Database, EveryViewCanBeRead) {
+  start(store_.runs()[1], "t1");
+  for (const char* view : {"v_status", "v_runs", "v_axes", "v_chunks", "v_attempts", "v_ledger"})
+    EXPECT_FALSE(store_.query(std::string("SELECT * FROM ") + view).rows.empty()) << view;
+}
+
+TEST_F(Database, OneOfANewerVersionIsRefused) {
+  ASSERT_EQ(run_command({"sqlite3", file().string(), "PRAGMA user_version = 99"}, 10.0).code, 0);
+  EXPECT_THROW(Store::open(file()), FormatError);
+  EXPECT_THROW(Store::open_read_only(file()), FormatError);
+}
+
+TEST_F(Database, AForeignOrDamagedFileIsRefused) {
+  const auto other = directory_.path() / "other.db";
+  ASSERT_EQ(run_command({"sqlite3", other.string(), "CREATE TABLE t (x)"}, 10.0).code, 0);
+  EXPECT_THROW(Store::open(other), FormatError);
+  std::ofstream(directory_.path() / "text.db") << std::string(4096, 'x');
+  EXPECT_THROW(Store::open(directory_.path() / "text.db"), StorageError);
+  EXPECT_THROW(Store::open_read_only(directory_.path() / "none.db"), StorageError);
+}
+
+TEST_F(Database, AReaderIsNotHeldUpByAWriter) {
+  const Store reader = Store::open_read_only(file());
+  start(store_.runs()[1], "t1");
+  EXPECT_EQ(reader.active_attempts().size(), 1u);
+}
+
+TEST(JournalMode, SharedFileSystemsDoWithoutSharedMemory) {
+  constexpr unsigned long kExt4 = 0xEF53;
+  EXPECT_STREQ(journal_mode_for(kExt4).journal, "WAL");
+  for (const unsigned long shared :
+       {0x6969UL, 0x0BD00BD0UL, 0x47504653UL, 0x19830326UL, 0x65735546UL}) {
+    EXPECT_STREQ(journal_mode_for(shared).journal, "DELETE");
+    EXPECT_STREQ(journal_mode_for(shared).synchronous, "FULL");
+  }
+}
+
+}  // namespace
+}  // namespace grouser

@@ -1,0 +1,45 @@
+#!/bin/bash
+# Attempt abc123def456 of run slip_20-s1, campaign sweep; written by grouser.
+
+token=abc123def456
+cd -- '/scratch/runs/sweep/runs/slip_20-s1-01234567' || exit 40
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+
+owns_run() {
+  [ "$(cat fence)" = "$token" ]
+}
+
+# The batch system wants the job to end: the engine is asked by its stop file, unless the run has
+# gone over to another attempt.
+ask_to_stop() {
+  if owns_run && [ ! -e stop ]; then
+    echo signal >stop
+  fi
+}
+trap ask_to_stop TERM USR1
+
+# The word of this script about itself; readers see a whole record or none.
+record() {
+  printf '{"token": "%s", "job": "%s", "host": "%s", "code": %d}\n' \
+    "$token" "${GROUSER_JOB:-}" "$(uname -n)" "$2" >"attempts/$token.$1.tmp" &&
+    mv -f "attempts/$token.$1.tmp" "attempts/$token.$1"
+}
+
+if ! owns_run; then
+  echo "superseded: another attempt owns this run" >&2
+  exit 22
+fi
+record started -1
+'/opt/grouser/bin/grouser-engine' '--run-dir' '/scratch/runs/sweep/runs/slip_20-s1-01234567' '--token' 'abc123def456' &
+engine=$!
+code=127
+# A trapped signal ends `wait` early: wait again until the engine is gone.
+while kill -0 "$engine" 2>/dev/null; do
+  wait "$engine"
+  code=$?
+done
+wait "$engine" 2>/dev/null
+last=$?
+[ "$last" -eq 127 ] || code=$last
+record exit "$code"
+exit "$code"

@@ -1,0 +1,55 @@
+#!/bin/bash
+#PBS -N gabc123def456
+#PBS -S /bin/bash
+#PBS -l select=1:ncpus=4:mpiprocs=4:mem=64gb+2:ncpus=3:mpiprocs=3:mem=64gb
+#PBS -l place=scatter
+#PBS -l walltime=08:00:00
+#PBS -q batch
+#PBS -A soil@gpu
+#PBS -j oe
+#PBS -r n
+# Attempt abc123def456 of run slip_20-s1, campaign sweep; written by grouser.
+
+. '/home/user/set up.sh'
+token=abc123def456
+cd -- '/scratch/it'\''s here/run' || exit 40
+exec >>attempts/abc123def456.log 2>&1
+
+owns_run() {
+  [ "$(cat fence)" = "$token" ]
+}
+
+# The batch system wants the job to end: the engine is asked by its stop file, unless the run has
+# gone over to another attempt.
+ask_to_stop() {
+  if owns_run && [ ! -e stop ]; then
+    echo signal >stop
+  fi
+}
+trap ask_to_stop TERM USR1
+
+# The word of this script about itself; readers see a whole record or none.
+record() {
+  printf '{"token": "%s", "job": "%s", "host": "%s", "code": %d}\n' \
+    "$token" "${PBS_JOBID:-}" "$(uname -n)" "$2" >"attempts/$token.$1.tmp" &&
+    mv -f "attempts/$token.$1.tmp" "attempts/$token.$1"
+}
+
+if ! owns_run; then
+  echo "superseded: another attempt owns this run" >&2
+  exit 22
+fi
+record started -1
+mpirun -n 10 --hostfile "$PBS_NODEFILE" '/opt/grouser/bin/grouser-engine' '--run-dir' '/scratch/runs/sweep/runs/slip_20-s1-01234567' '--token' 'abc123def456' &
+engine=$!
+code=127
+# A trapped signal ends `wait` early: wait again until the engine is gone.
+while kill -0 "$engine" 2>/dev/null; do
+  wait "$engine"
+  code=$?
+done
+wait "$engine" 2>/dev/null
+last=$?
+[ "$last" -eq 127 ] || code=$last
+record exit "$code"
+exit "$code"

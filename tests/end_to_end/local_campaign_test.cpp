@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/atomic_file.hpp"
+#include "base/run_contract.hpp"
+#include "campaign_run.hpp"
+
+namespace grouser {
+namespace {
+
+using Json = nlohmann::json;
+using LocalCampaign = CampaignRun;
+
+TEST_F(LocalCampaign, RunsToItsEndAndReports) {
+  const auto done = submit();
+  EXPECT_EQ(done.code, 0) << done.out << done.err;
+  expect_undisturbed_result();
+  EXPECT_NE(done.out.find("report: "), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(root() / "report" / "report.html"));
+  EXPECT_EQ(attempts().size(), 1u + 3u * 3u);
+}
+
+TEST_F(LocalCampaign, TheNumberOfChunksDoesNotChangeABit) {
+  for (const char* chunks : {"chunks: {count: 7}\n", "chunks: {simulated_time: 50 ms}\n"}) {
+    std::filesystem::remove_all(root());
+    write_campaign(chunks);
+    EXPECT_EQ(submit().code, 0);
+    expect_undisturbed_result();
+  }
+  EXPECT_GT(attempts().size(), 20u);
+}
+
+TEST_F(LocalCampaign, WalltimeCutsChunksFurtherAndChangesNoBit) {
+  write_campaign("resources: {walltime: 1 s}\nchunks: {count: 1}\n");
+  variables["FAKE_STEP_MICROSECONDS"] = "6000";  // 305 steps take two walltimes
+  EXPECT_EQ(submit().code, 0);
+  expect_undisturbed_result();
+  const Store store = Store::open_read_only(root() / Store::kFileName);
+  EXPECT_GE(store.chunks(run("towed").id).size(), 2u);
+}
+
+TEST_F(LocalCampaign, SubmittingAgainChangesNothing) {
+  EXPECT_EQ(submit().code, 0);
+  const auto before = attempts().size();
+  EXPECT_EQ(submit().code, 0);
+  EXPECT_EQ(attempts().size(), before);
+}
+
+TEST_F(LocalCampaign, AChangedYamlIsTakenOverOnlyWhenTold) {
+  EXPECT_EQ(submit().code, 0);
+  const auto file = directory_.path() / "campaign.yaml";
+  std::string yaml = read_file(file).value();
+  yaml.replace(yaml.find("slip: 20 %"), 10, "slip: 30 %");
+  write_atomic(file, yaml);
+  const auto refused = submit();
+  EXPECT_EQ(refused.code, 20);
+  EXPECT_NE(refused.err.find("--update"), std::string::npos);
+  EXPECT_EQ(runs().size(), 4u);
+  EXPECT_EQ(grouser({"submit", "campaign.yaml", "--update", "--every", "0.1"}).code, 0);
+  EXPECT_EQ(runs().size(), 5u);
+}
+
+TEST_F(LocalCampaign, ADryRunWritesNothing) {
+  const auto shown = grouser({"submit", "campaign.yaml", "--dry-run"});
+  EXPECT_EQ(shown.code, 0) << shown.err;
+  EXPECT_NE(shown.out.find("=== slip_20"), std::string::npos);
+  EXPECT_NE(shown.out.find("'--until-time'"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(directory_.path() / "runs"));
+}
+
+TEST_F(LocalCampaign, ABrokenYamlMakesNothing) {
+  write_campaign("resources: {ranks: many}\n");
+  EXPECT_EQ(submit().code, 20);
+  EXPECT_FALSE(std::filesystem::exists(directory_.path() / "runs"));
+}
+
+TEST_F(LocalCampaign, AMissingEngineIsSaidBeforeAnythingIsMade) {
+  variables["GROUSER_ENGINE"] = "/no/such/engine";
+  const auto refused = submit();
+  EXPECT_EQ(refused.code, 20);
+  EXPECT_NE(refused.err.find("/no/such/engine: is not a program"), std::string::npos);
+}
+
+TEST_F(LocalCampaign, StopLeavesACheckpointAndResumeGoesOnFromIt) {
+  variables["FAKE_STEP_MICROSECONDS"] = "5000";
+  EXPECT_EQ(grouser({"submit", "campaign.yaml", "--detach"}).code, 0);
+  const std::string bed = runs().front().label;
+  ASSERT_TRUE(wait_for(
+      [&] { return std::filesystem::exists(root() / run(bed).directory / run_files::kProgress); }));
+  EXPECT_EQ(grouser({"stop", "bed-*", "--every", "0.1"}).code, 0);
+  EXPECT_EQ(run(bed).state, State::kHeld);
+  EXPECT_EQ(run(bed).reason, "stopped on request");
+  const auto step = run(bed).step;
+  EXPECT_GT(step, 0);
+  EXPECT_EQ(grouser({"status", "--check"}).code, 1);
+  variables.erase("FAKE_STEP_MICROSECONDS");
+  EXPECT_EQ(grouser({"resume", "--all"}).code, 0);
+  EXPECT_EQ(submit().code, 0);
+  EXPECT_EQ(attempts()[1].start_step, step);
+  expect_undisturbed_result();
+}
+
+TEST_F(LocalCampaign, CancelKillsAndResumeGoesOn) {
+  variables["FAKE_HANG_AT"] = "50";
+  EXPECT_EQ(grouser({"submit", "campaign.yaml", "--detach"}).code, 0);
+  const std::string bed = runs().front().label;
+  ASSERT_TRUE(wait_for(
+      [&] { return std::filesystem::exists(root() / run(bed).directory / run_files::kProgress); }));
+  EXPECT_EQ(grouser({"cancel", bed}).code, 2);  // nobody said yes
+  EXPECT_EQ(grouser({"cancel", bed, "--yes", "--every", "0.1"}).code, 0);
+  EXPECT_EQ(run(bed).state, State::kCancelled);
+  variables.erase("FAKE_HANG_AT");
+  EXPECT_EQ(grouser({"resume", bed}).code, 0);
+  EXPECT_EQ(submit().code, 0);
+  expect_undisturbed_result();
+}
+
+TEST_F(LocalCampaign, CtrlCLeavesJobsRunningAndTickGoesOn) {
+  variables["FAKE_STEP_MICROSECONDS"] = "3000";
+  const pid_t manager = start({"submit", "campaign.yaml"});
+  ASSERT_TRUE(wait_for([&] { return has_runs(); }));
+  ASSERT_TRUE(wait_for([&] {
+    const auto active = Store::open_read_only(root() / Store::kFileName).active_attempts();
+    return !active.empty() && active.front().state == State::kRunning;
+  }));
+  ::kill(manager, SIGINT);
+  int status = 0;
+  ::waitpid(manager, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  const auto before = attempts();
+  ASSERT_EQ(before.size(), 1u);
+  EXPECT_EQ(before.front().state, State::kRunning);
+  EXPECT_EQ(grouser({"tick", "--wait", "--every", "0.1"}).code, 0);
+  expect_undisturbed_result();
+  EXPECT_EQ(attempts().size(), 10u);
+}
+
+TEST_F(LocalCampaign, StatusQueryAndShowSpeakJson) {
+  EXPECT_EQ(submit().code, 0);
+  const Json status = Json::parse(grouser({"status", "--json"}).out);
+  EXPECT_EQ(status["schema"], 1);
+  EXPECT_EQ(status["counts"]["COMPLETED"], 4);
+  EXPECT_EQ(status["runs"][1]["axes"]["slip"], "towed");
+  const Json query = Json::parse(
+      grouser({"query", "SELECT run, attempts FROM v_ledger WHERE run = 'towed'", "--json"}).out);
+  EXPECT_EQ(query["rows"][0]["attempts"], 3);
+  EXPECT_EQ(grouser({"query", "DELETE FROM run"}).code, 20);
+  const Json show = Json::parse(grouser({"show", "slip_*", "--json"}).out);
+  EXPECT_EQ(show["runs"].size(), 2u);
+  EXPECT_EQ(show["runs"][0]["chunks"].size(), 3u);
+  const auto unknown = grouser({"show", "slip_21"});
+  EXPECT_EQ(unknown.code, 20);
+  EXPECT_NE(unknown.err.find("did you mean slip_20?"), std::string::npos);
+}
+
+TEST_F(LocalCampaign, OnlySoManyRunAtOnce) {
+  write_campaign("resources: {concurrent: 1}\n");
+  variables["FAKE_STEP_MICROSECONDS"] = "500";
+  const pid_t manager = start({"submit", "campaign.yaml", "--every", "0.05"});
+  ASSERT_TRUE(wait_for([&] { return has_runs(); }));
+  std::size_t most = 0;
+  int status = 0;
+  while (::waitpid(manager, &status, WNOHANG) == 0)
+    most =
+        std::max(most, Store::open_read_only(root() / Store::kFileName).active_attempts().size());
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_EQ(most, 1u);
+}
+
+}  // namespace
+}  // namespace grouser

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include "base/errors.hpp"
+#include "base/hash.hpp"
+#include "engine/io/checkpoint.hpp"
+#include "engine/io/series.hpp"
+
+namespace grouser {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Run under mpirun with any number of ranks.
+
+fs::path fresh_directory(const std::string& name) {
+  const Communicator ranks;
+  const fs::path directory =
+      fs::path(::testing::TempDir()) / ("checkpoint_" + name + "_" + std::to_string(ranks.size()));
+  if (ranks.rank() == 0) fs::remove_all(directory);
+  ranks.barrier();
+  return directory;
+}
+
+State some_state(double factor, std::int64_t rows) {
+  const Communicator ranks;
+  StateTable table;
+  table.name = "grains";
+  table.key_count = rows;
+  table.integer_fields = {{"kind", "1", 1}};
+  table.real_fields = {{"position", "m", 3}, {"radius", "m", 1}};
+  StateTable empty;
+  empty.name = "nothing";
+  empty.real_fields = {{"value", "1", 1}};
+  for (std::int64_t key = rows - 1 - ranks.rank(); key >= 0; key -= ranks.size()) {
+    table.integers.insert(table.integers.end(), {key, 0, key % 7});
+    const double x = factor * static_cast<double>(key);
+    table.reals.insert(table.reals.end(), {x, -x, 0.1 * x, 1e-3});
+  }
+  return {table, empty};
+}
+
+CheckpointManifest at_step(std::int64_t step) {
+  CheckpointManifest manifest;
+  manifest.case_key = "key";
+  manifest.step = step;
+  manifest.time = 0.5 * static_cast<double>(step);
+  return manifest;
+}
+
+std::optional<CheckpointManifest> write(CheckpointStore& store, double factor, std::int64_t step) {
+  return store.write(some_state(factor, 1000), at_step(step), [] { return true; });
+}
+
+TEST(Checkpoint, ReadsBackTheBitsThatWereWritten) {
+  const Communicator ranks;
+  CheckpointStore store(ranks, fresh_directory("roundtrip"));
+  ASSERT_TRUE(write(store, 1.0 / 3.0, 10));
+  const auto loaded = store.load_newest("key");
+  ASSERT_TRUE(loaded);
+  EXPECT_EQ(loaded->manifest.step, 10);
+  EXPECT_EQ(hash_state(ranks, loaded->state), hash_state(ranks, some_state(1.0 / 3.0, 1000)));
+  EXPECT_EQ(table_of(loaded->state, "grains").real_fields[0].unit, "m");
+  EXPECT_FALSE(store.load_newest("another case"));
+}
+
+TEST(Checkpoint, ATruncatedOneIsRefusedAndThePreviousUsed) {
+  const Communicator ranks;
+  const fs::path directory = fresh_directory("truncated");
+  CheckpointStore store(ranks, directory);
+  write(store, 1.0, 10);
+  const auto second = write(store, 2.0, 20);
+  if (ranks.rank() == 0)
+    fs::resize_file(directory / second->file, fs::file_size(directory / second->file) / 2);
+  ranks.barrier();
+  const auto loaded = store.load_newest("key");
+  ASSERT_TRUE(loaded);
+  EXPECT_EQ(loaded->manifest.step, 10);
+}
+
+TEST(Checkpoint, AFlippedBitIsRefusedAndThePreviousUsed) {
+  const Communicator ranks;
+  const fs::path directory = fresh_directory("flipped");
+  CheckpointStore store(ranks, directory);
+  write(store, 1.0, 10);
+  const auto second = write(store, 2.0, 20);
+  if (ranks.rank() == 0) {
+    std::fstream file(directory / second->file, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekg(0, std::ios::end);
+    const auto place = static_cast<std::streamoff>(file.tellg()) / 2;
+    file.seekg(place);
+    const int byte = file.get();
+    file.seekp(place);
+    file.put(static_cast<char>(byte ^ 0x10));
+  }
+  ranks.barrier();
+  const auto loaded = store.load_newest("key");
+  ASSERT_TRUE(loaded);
+  EXPECT_EQ(loaded->manifest.step, 10);
+}
+
+TEST(Checkpoint, WhenAllAreDamagedTheRunIsRefused) {
+  const Communicator ranks;
+  const fs::path directory = fresh_directory("all_bad");
+  CheckpointStore store(ranks, directory);
+  const auto only = write(store, 1.0, 10);
+  if (ranks.rank() == 0) fs::resize_file(directory / only->file, 100);
+  ranks.barrier();
+  EXPECT_THROW(store.load_newest("key"), FormatError);
+}
+
+TEST(Checkpoint, WithoutItsManifestItDoesNotExist) {
+  const Communicator ranks;
+  const fs::path directory = fresh_directory("no_manifest");
+  CheckpointStore store(ranks, directory);
+  write(store, 1.0, 10);
+  EXPECT_FALSE(store.write(some_state(2.0, 1000), at_step(20), [] { return false; }));
+  EXPECT_EQ(store.load_newest("key")->manifest.step, 10);
+  ranks.barrier();
+  // Nothing of the unpublished one remains.
+  EXPECT_EQ(std::distance(fs::directory_iterator(directory), fs::directory_iterator()), 2);
+}
+
+TEST(Checkpoint, OnlyTheNewestAreKept) {
+  const Communicator ranks;
+  const fs::path directory = fresh_directory("retain");
+  CheckpointStore store(ranks, directory);
+  for (int i = 1; i <= 5; ++i) write(store, i, i);
+  store.retain(2);
+  EXPECT_EQ(std::distance(fs::directory_iterator(directory), fs::directory_iterator()), 4);
+  EXPECT_EQ(store.load_newest("key")->manifest.step, 5);
+}
+
+TEST(Checkpoint, ADiskThatFillsUpInTheMiddleKeepsThePrevious) {
+  const Communicator ranks;
+  const fs::path directory = fresh_directory("full");
+  CheckpointStore store(ranks, directory);
+  write(store, 1.0, 10);
+  // Files end here for this process as they do on a full disk: the write fails half way.
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  rlimit small = before;
+  small.rlim_cur = 20000;
+  setrlimit(RLIMIT_FSIZE, &small);
+  EXPECT_THROW(write(store, 2.0, 20), StorageError);
+  setrlimit(RLIMIT_FSIZE, &before);
+  const auto loaded = store.load_newest("key");
+  ASSERT_TRUE(loaded);
+  EXPECT_EQ(loaded->manifest.step, 10);
+  EXPECT_EQ(hash_state(ranks, loaded->state), hash_state(ranks, some_state(1.0, 1000)));
+  ASSERT_TRUE(write(store, 2.0, 20));  // and there is room again
+  EXPECT_EQ(store.load_newest("key")->manifest.step, 20);
+}
+
+TEST(Series, ContinuesAsIfItHadNeverBeenCut) {
+  if (Communicator().rank() != 0) return;
+  const fs::path directory = fresh_directory("series");
+  fs::create_directories(directory);
+  const auto text_of = [](const fs::path& file) {
+    std::ifstream in(file);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  {
+    SeriesFile straight(directory / "a.csv", 0);
+    for (int i = 1; i <= 6; ++i) straight.add(i, 0.1 * i, "driving", {1.0 / i, NAN});
+    straight.flush();
+  }
+  {
+    SeriesFile cut(directory / "b.csv", 0);
+    for (int i = 1; i <= 5; ++i) cut.add(i, 0.1 * i, "driving", {1.0 / i, NAN});
+    cut.flush();
+  }
+  std::ofstream(directory / "b.csv", std::ios::app) << "6,0.6,dri";  // torn by a kill
+  SeriesFile resumed(directory / "b.csv", 3);
+  for (int i = 4; i <= 6; ++i) resumed.add(i, 0.1 * i, "driving", {1.0 / i, NAN});
+  resumed.flush();
+  EXPECT_EQ(text_of(directory / "a.csv"), text_of(directory / "b.csv"));
+}
+
+}  // namespace
+}  // namespace grouser

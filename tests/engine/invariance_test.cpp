@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "engine/terrain/wheel.hpp"
+#include "tests/engine/reference_world.hpp"
+#include "tests/engine/small_world.hpp"
+
+namespace grouser {
+namespace {
+
+// Run under mpirun with any number of ranks; each rank also runs the same on its own to compare.
+
+std::uint64_t hash_of(const World& world) {
+  State state;
+  world.save_state(state);
+  return hash_state(world.ranks(), state);
+}
+
+// Grains that rain into a box with a spinning drum in the middle of it.
+World rain(const Communicator& ranks, double skin, std::uint64_t seed) {
+  WorldSettings settings = small_settings();
+  settings.rolling = "elastic_plastic";
+  settings.skin = skin;
+  settings.time_step = 1e-5;
+  World world(ranks, settings);
+  add_box(world, {0.5, 0.4, 0.05});
+  WheelCase drum;
+  drum.diameter = 0.05;
+  drum.width = 0.04;
+  drum.facets = 36;
+  const std::size_t wheel =
+      world.add_body("drum", wheel_mesh(drum), kTestSolid, {0.5, 0.6, 0.1}, true);
+  world.body(wheel).motion.position = {0.05, 0.05, 0.06};
+  world.body(wheel).motion.spin = 20.0;
+  const std::vector<Particle> grains = loose_column(243, seed);
+  const auto count = static_cast<std::int64_t>(grains.size());
+  for (std::int64_t i = first_key(count, ranks.size(), ranks.rank());
+       i < first_key(count, ranks.size(), ranks.rank() + 1); ++i) {
+    Particle p = grains[static_cast<std::size_t>(i)];
+    p.position.z += 0.1;
+    p.velocity.z -= 1.0;
+    world.add_particle(p);
+  }
+  return world;
+}
+
+// Steps and moves the drum by what the grains do to it, so that body loads enter the trajectory.
+void run(World& world, int steps) {
+  for (int i = 0; i < steps; ++i) {
+    ASSERT_EQ(world.step().fault, Fault::kNone);
+    BodyMotion& motion = world.body(1).motion;
+    motion.spin += world.load(1).moment_y.value() * world.settings().time_step / 1e-4;
+    motion.velocity.x += world.load(1).force_x.value() * world.settings().time_step / 2.0;
+    motion.position += world.settings().time_step * motion.velocity;
+    motion.angle += world.settings().time_step * motion.spin;
+  }
+}
+
+TEST(Invariance, TrajectoryIsTheSameBitForBitOnAnyNumberOfRanks) {
+  World together = rain(Communicator(), 1e-3, 5);
+  World alone = rain(Communicator::alone(), 1e-3, 5);
+  for (int leg = 0; leg < 3; ++leg) {
+    run(together, 8000);
+    run(alone, 8000);
+    ASSERT_EQ(hash_of(together), hash_of(alone)) << "after leg " << leg;
+  }
+  // The test means something only when grains touched, moved between ranks and hit the drum.
+  EXPECT_GT(together.contacts(), 200);
+  EXPECT_NE(together.body(1).motion.spin, 20.0);
+}
+
+TEST(Invariance, TrajectoryDoesNotDependOnTheSkin) {
+  World thin = rain(Communicator(), 0.2e-3, 6);
+  World thick = rain(Communicator(), 3e-3, 6);
+  run(thin, 12000);
+  run(thick, 12000);
+  EXPECT_EQ(hash_of(thin), hash_of(thick));
+}
+
+TEST(Restart, ContinuesBitForBitFromAnyStep) {
+  World straight = rain(Communicator(), 1e-3, 7);
+  World cut = rain(Communicator(), 1e-3, 7);
+  run(straight, 12000);
+  int done = 0;
+  for (const int stop : {1, 500, 4321, 9999, 12000}) {
+    run(cut, stop - done);
+    done = stop;
+    State state;
+    cut.save_state(state);
+    World fresh = rain(Communicator(), 0.7e-3, 99);  // other grains, until the state replaces them
+    fresh.load_state(state);
+    ASSERT_EQ(hash_of(fresh), hash_of(cut)) << "right after loading at step " << stop;
+    cut = std::move(fresh);
+  }
+  EXPECT_EQ(hash_of(straight), hash_of(cut));
+}
+
+TEST(Restart, StateMovesBetweenNumbersOfRanks) {
+  World together = rain(Communicator(), 1e-3, 8);
+  run(together, 5000);
+  State state;
+  together.save_state(state);
+  // Every rank gets all rows and goes on alone.
+  for (StateTable& table : state) {
+    std::vector<Bytes> out(static_cast<std::size_t>(Communicator().size()));
+    for (Bytes& to : out) {
+      const std::size_t counts[2] = {table.integers.size(), table.reals.size()};
+      append_bytes(to, counts, 2);
+      append_bytes(to, table.integers.data(), counts[0]);
+      append_bytes(to, table.reals.data(), counts[1]);
+    }
+    table.integers.clear();
+    table.reals.clear();
+    for (const Bytes& message : Communicator().exchange_all(out)) {
+      ByteReader reader(message);
+      std::size_t counts[2];
+      reader.take(counts, 2);
+      table.integers.resize(table.integers.size() + counts[0]);
+      reader.take(table.integers.data() + table.integers.size() - counts[0], counts[0]);
+      table.reals.resize(table.reals.size() + counts[1]);
+      reader.take(table.reals.data() + table.reals.size() - counts[1], counts[1]);
+    }
+  }
+  World alone = rain(Communicator::alone(), 1e-3, 99);
+  alone.load_state(state);
+  run(together, 5000);
+  run(alone, 5000);
+  EXPECT_EQ(hash_of(together), hash_of(alone));
+}
+
+TEST(Oracle, ListsAndCellsGiveTheBitsOfBruteForce) {
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    WorldSettings settings = small_settings();
+    settings.rolling = "elastic_plastic";
+    settings.low = {-1, -1, -1};
+    settings.high = {1, 1, 1};
+    settings.gravity = 1.0;
+    std::vector<Particle> grains = loose_column(120, seed);
+    settings.time_step = 1e-5;
+    // A cloud that falls together, so that contacts open and close.
+    for (Particle& p : grains) p.velocity = 30.0 * (Vec3{0.05, 0.05, 0.01} - p.position);
+    World world{Communicator(), settings};
+    for (const Particle& p : grains)
+      if (p.id % Communicator().size() == Communicator().rank()) world.add_particle(p);
+    ReferenceWorld oracle(grains, settings.grain, settings.grain_grain, settings.gravity,
+                          settings.time_step);
+    std::int64_t most = 0;
+    for (int i = 0; i < 1500; ++i) {
+      ASSERT_EQ(world.step().fault, Fault::kNone);
+      oracle.step();
+      most = std::max(most, world.contacts());
+    }
+    EXPECT_GT(most, 40);
+    for (std::size_t i = 0; i < world.owned(); ++i) {
+      const Particle& p = world.particles()[i];
+      const Particle& q = oracle.grains()[static_cast<std::size_t>(p.id)];
+      ASSERT_EQ(p.position, q.position) << "seed " << seed << " grain " << p.id;
+      ASSERT_EQ(p.velocity, q.velocity);
+      ASSERT_EQ(p.spin, q.spin);
+    }
+  }
+}
+
+TEST(Faults, ANanIsAgreedByAllRanks) {
+  World world = rain(Communicator(), 1e-3, 9);
+  State state;
+  world.save_state(state);
+  for (StateTable& table : state)
+    if (table.name == "particles" && Communicator().rank() == 0)
+      table.reals[3] = std::numeric_limits<double>::quiet_NaN();
+  world.load_state(state);
+  EXPECT_EQ(world.step().fault, Fault::kNotANumber);
+}
+
+TEST(Faults, AParticleOutsideTheBoxIsAgreedByAllRanks) {
+  World world = rain(Communicator(), 1e-3, 9);
+  State state;
+  world.save_state(state);
+  for (StateTable& table : state)
+    if (table.name == "particles" && Communicator().rank() == 0) table.reals[2] = -0.5;
+  world.load_state(state);
+  EXPECT_EQ(world.step().fault, Fault::kLostParticle);
+}
+
+}  // namespace
+}  // namespace grouser

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/app/setup.hpp"
+#include "engine/terrain/bed.hpp"
+#include "engine/terrain/wheel.hpp"
+
+namespace grouser {
+namespace {
+
+// A toy of the main job: a 14 cm wheel of 30 N on about a thousand grains.
+Case toy() {
+  Case input;
+  input.box.length = 0.30;
+  input.box.width = 0.16;
+  input.box.depth = 0.10;
+  input.grains.size_curve = {{9e-3, 0.0}, {14e-3, 1.0}};
+  input.grains.solid = {1e7, 0.25};
+  input.box.solid = input.grains.solid;
+  input.contact.rolling = "elastic_plastic";
+  input.contact.grain_grain = {0.4, 0.5, 0.2};
+  input.contact.grain_box = {0.4, 0.5, 0.2};
+  input.contact.grain_wheel = {0.4, 0.6, 0.1};
+  input.bed.depth = 0.05;
+  input.bed.preparation_friction = 0.3;
+  input.has_wheel = true;
+  WheelCase& w = input.wheel;
+  w.diameter = 0.14;
+  w.width = 0.06;
+  w.facets = 60;
+  w.solid = input.grains.solid;
+  w.load = 30.0;
+  w.inertia = 2e-3;
+  w.start = 0.35;
+  w.settle_time = 0.1;
+  w.settle_speed = 0.2;
+  w.ramp_time = 0.01;
+  w.forward_speed = 0.4;
+  w.travel = 0.05;
+  w.average_travel = 0.02;
+  return input;
+}
+
+// The bed, settled once for all tests.
+const State& bed() {
+  static const State state = [] {
+    Case input = bed_case(toy());
+    World world = make_world(Communicator::alone(), input);
+    fill(world, input);
+    const auto steps = static_cast<int>(0.5 / world.settings().time_step);
+    for (int i = 0; i < steps; ++i) world.step();
+    EXPECT_LT(world.kinetic_energy() / static_cast<double>(world.particle_count()),
+              1e3 * settled_energy(input));
+    State saved;
+    world.save_state(saved);
+    return saved;
+  }();
+  return state;
+}
+
+struct Drive {
+  WheelSample settled;  // mean over the last tenth of the settling
+  WheelSample driven;   // mean over the last 40 % of the way
+  double spin_start = 0.0;
+  double spin_end = 0.0;
+};
+
+Drive drive(const Case& input) {
+  World world = make_world(Communicator::alone(), input);
+  world.load_state(bed());
+  Wheel wheel(input, world, kWheelBody);
+  wheel.place();
+  const double dt = world.settings().time_step;
+  const double end = run_duration(input);
+  const double settle = input.wheel.settle_time;
+  const double window = end - 0.4 * (end - settle);
+  Drive out;
+  bool took_settled = false;
+  bool took_window = false;
+  for (double time = 0.0; time < end; time += dt) {
+    if (!took_settled && time > 0.9 * settle) {
+      wheel.take_sample();
+      took_settled = true;
+    }
+    if (!took_window && time > window) {
+      wheel.take_sample();
+      out.spin_start = world.body(kWheelBody).motion.spin;
+      took_window = true;
+    }
+    const World::StepResult result = world.step();
+    EXPECT_EQ(result.fault, Fault::kNone);
+    wheel.advance(time + dt, result.max_overlap);
+    if (took_settled && !took_window && time + 2.0 * dt > settle &&
+        out.settled.vertical_force == 0.0)
+      out.settled = wheel.take_sample();
+  }
+  out.driven = wheel.take_sample();
+  out.spin_end = world.body(kWheelBody).motion.spin;
+  return out;
+}
+
+TEST(Wheel, StandsOnTheBedWithItsLoad) {
+  const Drive result = drive(toy());
+  // At rest the soil carries the load; what still moves in the bed scatters it by a few per cent.
+  EXPECT_NEAR(result.settled.vertical_force / 30.0, 1.0, 0.05);
+  EXPECT_NEAR(result.settled.pull / 30.0, 0.0, 0.1);
+  EXPECT_EQ(result.settled.spin, 0.0);
+}
+
+TEST(Wheel, KeepsItsLoadOnTheMeanWhileDriving) {
+  Case input = toy();
+  input.wheel.slip = 0.2;
+  const Drive result = drive(input);
+  // Riding over single grains of a tenth of its diameter makes the force swing.
+  EXPECT_NEAR(result.driven.vertical_force / 30.0, 1.0, 0.3);
+  EXPECT_NEAR(result.driven.forward_speed, 0.4, 1e-9);
+  EXPECT_NEAR(result.driven.slip(0.07), 0.2, 1e-9);
+  EXPECT_NEAR(result.driven.spin, 0.4 / (0.07 * 0.8), 1e-6);
+}
+
+TEST(Wheel, ADrivenWheelIsPushedForwardAndALockedOneHeldBack) {
+  Case driven = toy();
+  driven.wheel.slip = 0.5;
+  const WheelSample fast = drive(driven).driven;
+  EXPECT_GT(fast.gross_tractive_effort, 0.0);  // the soil resists the turning: torque must be given
+  Case locked = toy();
+  locked.wheel.drive = "rim_speed";
+  locked.wheel.rim_speed = 0.0;
+  const WheelSample held = drive(locked).driven;
+  EXPECT_LT(held.gross_tractive_effort, 0.0);  // the soil turns the wheel forward
+  EXPECT_LT(held.pull, 0.0);
+  EXPECT_GT(fast.pull, held.pull + 0.2 * 30.0);
+  // Motion resistance is what the soil takes of the gross effort.
+  EXPECT_NEAR(fast.motion_resistance(), fast.gross_tractive_effort - fast.pull, 1e-12);
+  EXPECT_DOUBLE_EQ(held.skid(0.07), 1.0);
+  EXPECT_TRUE(std::isnan(held.slip(0.07)));
+}
+
+TEST(Wheel, ATowedWheelTurnsByTheSoilAlone) {
+  Case input = toy();
+  input.wheel.drive = "towed";
+  const Drive result = drive(input);
+  EXPECT_LT(result.driven.pull, 0.0);
+  EXPECT_GT(result.driven.spin, 0.0);
+  // No torque on the axle: the mean contact moment is the gain of angular momentum.
+  const double window = 0.4 * (run_duration(input) - input.wheel.settle_time);
+  const double moment = input.wheel.inertia * (result.spin_end - result.spin_start) / window;
+  EXPECT_NEAR(-result.driven.gross_tractive_effort * 0.07, moment, 0.02 * 30.0 * 0.07);
+}
+
+TEST(Wheel, TorqueDrivesItForward) {
+  Case input = toy();
+  input.wheel.drive = "torque";
+  input.wheel.torque = 0.3;
+  const WheelSample pushed = drive(input).driven;
+  EXPECT_GT(pushed.forward_speed, 0.01);
+  EXPECT_GT(pushed.spin, 0.0);
+  input.wheel.torque = -0.3;
+  EXPECT_LT(drive(input).driven.forward_speed, -0.01);
+}
+
+TEST(Wheel, ItsStateSurvivesACheckpoint) {
+  const Case input = toy();
+  World world = make_world(Communicator::alone(), input);
+  world.load_state(bed());
+  Wheel wheel(input, world, kWheelBody);
+  wheel.place();
+  for (int i = 1; i <= 50; ++i) {
+    world.step();
+    wheel.advance(i * world.settings().time_step, 0.01);
+  }
+  State state;
+  wheel.save_state(state);
+  Wheel other(input, world, kWheelBody);
+  other.load_state(state);
+  const WheelSample a = wheel.take_sample();
+  const WheelSample b = other.take_sample();
+  EXPECT_EQ(a.vertical_force, b.vertical_force);
+  EXPECT_EQ(a.sinkage, b.sinkage);
+  EXPECT_EQ(a.travel, b.travel);
+  EXPECT_EQ(a.max_overlap, b.max_overlap);
+}
+
+}  // namespace
+}  // namespace grouser

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "schedulers/scripts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "base/atomic_file.hpp"
+#include "schedulers/command.hpp"
+#include "schedulers/scheduler.hpp"
+#include "schedulers/table.hpp"
+#include "tests/support/temporary_directory.hpp"
+
+namespace grouser {
+namespace {
+
+JobSpec plain_spec() {
+  JobSpec spec;
+  spec.campaign = "sweep";
+  spec.label = "slip_20-s1";
+  spec.token = "abc123def456";
+  spec.run_directory = "/scratch/runs/sweep/runs/slip_20-s1-01234567";
+  spec.engine = {"/opt/grouser/bin/grouser-engine", "--run-dir", spec.run_directory.string(),
+                 "--token", spec.token};
+  return spec;
+}
+
+JobSpec full_spec() {
+  JobSpec spec = plain_spec();
+  spec.run_directory = "/scratch/it's here/run";
+  spec.ranks = 10;
+  spec.nodes = 3;
+  spec.walltime = 8 * 3600.0;
+  spec.memory = "64G";
+  spec.partition = "batch";
+  spec.account = "soil@gpu";
+  spec.qos = "normal";
+  spec.launcher = "srun --mpi=pmix -n {ranks}";
+  spec.setup_file = "/home/user/set up.sh";
+  return spec;
+}
+
+// Compares with the file, or writes it when GROUSER_WRITE_GOLDEN is set.
+void expect_golden(const std::string& name, const std::string& text) {
+  const auto file = std::filesystem::path(GROUSER_TEST_DATA) / "scripts" / name;
+  if (std::getenv("GROUSER_WRITE_GOLDEN") != nullptr) write_atomic(file, text);
+  EXPECT_EQ(read_file(file).value_or("(no such file)"), text) << file;
+}
+
+TEST(Scripts, AreWordForWordTheGoldenOnes) {
+  expect_golden("local_plain.sh", make_local_script(plain_spec()));
+  expect_golden("slurm_plain.sh", make_slurm_script(plain_spec()));
+  expect_golden("slurm_full.sh", make_slurm_script(full_spec()));
+  JobSpec spec = full_spec();
+  spec.qos.clear();
+  spec.launcher.clear();
+  expect_golden("pbs_full.sh", make_pbs_script(spec));
+}
+
+TEST(Scripts, OfEveryKindAreGoodShell) {
+  TemporaryDirectory directory;
+  for (const std::string& name : scheduler_names()) {
+    const auto file = directory.path() / (name + ".sh");
+    write_atomic(file, scheduler_kind(name).make_script(full_spec()));
+    const auto result = run_command({"bash", "-n", file.string()}, 10.0);
+    EXPECT_EQ(result.code, 0) << name << ": " << result.err;
+  }
+}
+
+TEST(Scripts, JobNamesFitOldBatchSystems) {
+  const std::string name = job_name("123456789abc");
+  EXPECT_LE(name.size(), 15u);
+  EXPECT_TRUE(std::isalpha(static_cast<unsigned char>(name[0])) != 0);
+}
+
+TEST(Scripts, StopMarginIsFivePercentWithinBounds) {
+  EXPECT_EQ(stop_margin(0.0), 0.0);
+  EXPECT_EQ(stop_margin(20.0), 10.0);
+  EXPECT_EQ(stop_margin(100.0), 30.0);
+  EXPECT_EQ(stop_margin(3600.0), 180.0);
+  EXPECT_EQ(stop_margin(86400.0), 600.0);
+}
+
+}  // namespace
+}  // namespace grouser
