@@ -160,8 +160,8 @@ TEST(Checkpoint, ADiskThatFillsUpInTheMiddleKeepsThePrevious) {
 }
 
 TEST(Series, ContinuesAsIfItHadNeverBeenCut) {
-  if (Communicator().rank() != 0) return;
   const fs::path directory = fresh_directory("series");
+  if (Communicator().rank() != 0) return;
   fs::create_directories(directory);
   const auto text_of = [](const fs::path& file) {
     std::ifstream in(file);
