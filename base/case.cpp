@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "base/hash.hpp"
@@ -175,6 +176,9 @@ void describe_output(FieldVisitor& v, OutputCase& o) {
              o.series_interval, "s", Range::positive());
   v.quantity({"checkpoint_interval", "simulated time between checkpoints", kOptional},
              o.checkpoint_interval, "s", Range::positive());
+  v.quantity({"snapshot_interval",
+              "simulated time between VTKHDF snapshots of grains and wheel; 0 = none", kOptional},
+             o.snapshot_interval, "s", Range::not_negative());
 }
 
 double largest_diameter(const GrainsCase& grains) {
@@ -253,10 +257,35 @@ double run_duration(const Case& input) {
   return wheel.settle_time + drive;
 }
 
+namespace {
+
+// A value that the wheel's drive or profile never looks at makes no other run.
+void leave_out_unused(WheelCase& wheel) {
+  const WheelCase defaults;
+  if (wheel.drive != "slip") wheel.slip = defaults.slip;
+  if (wheel.drive != "torque") wheel.torque = defaults.torque;
+  if (wheel.drive != "rim_speed") wheel.rim_speed = defaults.rim_speed;
+  if (wheel.profile != "stl") {
+    wheel.stl_file = defaults.stl_file;
+    wheel.stl_scale = defaults.stl_scale;
+  } else {
+    wheel.facets = defaults.facets;
+    // A campaign names the file by its content; where it lies makes no other run.
+    wheel.stl_file = std::filesystem::path(wheel.stl_file).filename().string();
+  }
+  if (wheel.profile == "grousers") return;
+  wheel.grousers = defaults.grousers;
+  wheel.grouser_height = defaults.grouser_height;
+  wheel.grouser_width = defaults.grouser_width;
+}
+
+}  // namespace
+
 std::string content_key(const Case& input) {
   Case copy = input;
   copy.output = OutputCase{};
   copy.numerics.max_overlap = NumericsCase{}.max_overlap;
+  leave_out_unused(copy.wheel);
   return hash_text(emit_yaml(write_case(copy)));
 }
 

@@ -107,6 +107,7 @@ struct NumericsCase {
 struct OutputCase {
   double series_interval = 1e-3;      ///< simulated time between rows of the time series [s]
   double checkpoint_interval = 0.05;  ///< simulated time between checkpoints [s]
+  double snapshot_interval = 0.0;     ///< simulated time between snapshots; 0 = none [s]
 };
 
 struct Case {
@@ -138,7 +139,8 @@ Case bed_case(const Case& input);
 double run_duration(const Case& input);
 
 /// Content key of a case: 16 hexadecimal digits of the XXH3 hash of its SI text, with what does not
-/// change the trajectory (output intervals, the overlap limit) left out. Local.
+/// change the trajectory (output intervals, the overlap limit, values of another drive or profile)
+/// left out. Local.
 std::string content_key(const Case& input);
 
 }  // namespace grouser

@@ -70,6 +70,7 @@ std::string to_json(const Outcome& o) {
               {"code", static_cast<int>(o.code)},
               {"word", word_of(o.code)},
               {"reason", o.reason},
+              {"by_signal", o.by_signal},
               {"step", o.step},
               {"time", o.time},
               {"end_time", o.end_time},
@@ -90,6 +91,7 @@ Outcome outcome_from_json(const std::string& text, const std::string& source) {
     j.at("token").get_to(o.token);
     o.code = code_from(j.at("code").get<int>());
     j.at("reason").get_to(o.reason);
+    j.at("by_signal").get_to(o.by_signal);
     j.at("step").get_to(o.step);
     j.at("time").get_to(o.time);
     j.at("end_time").get_to(o.end_time);

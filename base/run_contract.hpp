@@ -13,11 +13,11 @@ namespace grouser {
 
 /// Exit codes of `grouser-engine`; also `code` in the outcome record.
 enum class EngineCode : int {
-  kFinished = 0,            ///< the run reached its end
-  kPaused = 10,             ///< checkpoint complete, continue from it
-  kSteady = 11,             ///< steady state reached, nothing more to do
-  kStopped = 12,            ///< stopped on request (stop file or SIGTERM), checkpoint complete
-  kInputRefused = 20,       ///< case, STL or command line cannot be used
+  kFinished = 0,       ///< the run reached its end
+  kPaused = 10,        ///< end of chunk or walltime, or a signal; checkpoint complete, continue
+  kSteady = 11,        ///< steady state reached, nothing more to do
+  kStopped = 12,       ///< stopped on request (stop file), checkpoint complete
+  kInputRefused = 20,  ///< case, STL or command line cannot be used
   kCheckpointRefused = 21,  ///< no usable checkpoint although one must exist
   kFenceLost = 22,          ///< another attempt owns the run; nothing was touched
   kBrokeDown = 30,          ///< NaN, lost particle or over-large overlap
@@ -33,11 +33,13 @@ const char* word_of(EngineCode code);
 namespace run_files {
 inline constexpr const char* kCase = "case.yaml";  ///< frozen input, SI units
 inline constexpr const char* kFence = "fence";     ///< token of the attempt that owns the run
-inline constexpr const char* kStop = "stop";       ///< its existence asks the engine to stop
+inline constexpr const char* kStop = "stop";       ///< its existence asks the engine to stop;
+                                                   ///< "signal" in it: the job got a signal
 inline constexpr const char* kProgress = "progress.json";  ///< renewed about once a second
 inline constexpr const char* kSeries = "series.csv";       ///< time series, one row per interval
 inline constexpr const char* kSlice = "slice.csv";  ///< grains near the mid-plane, for pictures
 inline constexpr const char* kCheckpoints = "checkpoints";  ///< directory
+inline constexpr const char* kSnapshots = "snapshots";      ///< directory of VTKHDF files
 inline constexpr const char* kEvents = "events";            ///< directory of event records
 std::string outcome(const std::string& token);              ///< outcome-<token>.json
 }  // namespace run_files
@@ -48,6 +50,7 @@ struct Outcome {
   std::string token;
   EngineCode code = EngineCode::kDefect;
   std::string reason;      ///< one sentence for people
+  bool by_signal = false;  ///< ended early because the batch system or a person sent a signal
   std::int64_t step = 0;   ///< last completed step
   double time = 0.0;       ///< simulated time of that step [s]
   double end_time = 0.0;   ///< simulated time at which the run is done, if known, else 0 [s]

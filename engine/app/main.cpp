@@ -17,7 +17,7 @@
 namespace grouser {
 namespace {
 
-void on_signal(int) { request_stop(); }
+void on_signal(int) { signal_stop(); }
 
 // Every rank reads the input itself; when one cannot, all refuse.
 Case read_frozen_case(const Communicator& ranks, const std::filesystem::path& file) {
@@ -25,6 +25,9 @@ Case read_frozen_case(const Communicator& ranks, const std::filesystem::path& fi
   Case input;
   try {
     input = read_case(load_yaml(file), problems);
+    // The surface file's path counts from the run directory, as a campaign freezes it.
+    if (input.wheel.profile == "stl")
+      input.wheel.stl_file = (file.parent_path() / input.wheel.stl_file).string();
     if (problems.empty() && input.has_wheel) wheel_mesh(input.wheel).check("wheel");
   } catch (const ConfigError& error) {
     problems = error.problems();
@@ -101,13 +104,20 @@ int main(int argc, char** argv) {
       ->required();
   app.add_option("--bed", options.bed, "run directory of the settled bed");
   app.add_option("--until-time", options.until_time, "simulated time at which the chunk ends [s]");
-  app.add_option("--walltime", options.walltime, "wall time after which the engine has ended [s]");
+  app.add_option("--max-seconds", options.max_seconds,
+                 "wall time after which the engine has ended [s]");
+  std::string restart = "auto";
+  app.add_option("--restart", restart,
+                 "auto: continue from the newest good checkpoint, or start; "
+                 "required: continue, or refuse")
+      ->check(CLI::IsMember({"auto", "required"}));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     const int shown = ranks.rank() == 0 ? app.exit(error) : error.get_exit_code();
     return shown == 0 ? 0 : static_cast<int>(EngineCode::kInputRefused);
   }
+  options.must_continue = restart == "required";
   std::signal(SIGTERM, on_signal);
   std::signal(SIGUSR1, on_signal);
   std::signal(SIGUSR2, on_signal);

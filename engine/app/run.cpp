@@ -13,6 +13,7 @@
 #include "base/errors.hpp"
 #include "engine/app/setup.hpp"
 #include "engine/app/slice.hpp"
+#include "engine/app/snapshot.hpp"
 #include "engine/core/agree.hpp"
 #include "engine/terrain/bed.hpp"
 
@@ -29,10 +30,11 @@ constexpr double kFinaliseSeconds = 1.0;
 // What ranks ask for in a step's message; the largest wins.
 constexpr double kNothing = 0.0;
 constexpr double kPause = 1.0;
-constexpr double kStop = 2.0;
-constexpr double kStorage = 3.0;
+constexpr double kSignal = 2.0;
+constexpr double kStop = 3.0;
+constexpr double kStorage = 4.0;
 
-std::atomic<bool> stop_requested{false};
+std::atomic<bool> signal_came{false};
 
 std::int64_t steps_in(double time, double time_step) {
   return std::max<std::int64_t>(1, std::llround(time / time_step));
@@ -45,7 +47,7 @@ std::int64_t step_at(double time, double time_step) {
 
 }  // namespace
 
-void request_stop() { stop_requested = true; }
+void signal_stop() { signal_came = true; }
 
 Run::Run(const Communicator& ranks, const EngineOptions& options, const Case& input,
          Clock::time_point started)
@@ -68,6 +70,8 @@ Run::Run(const Communicator& ranks, const EngineOptions& options, const Case& in
     until_step_ = std::max<std::int64_t>(1, step_at(*options_.until_time, dt));
   series_steps_ = steps_in(input_.output.series_interval, dt);
   checkpoint_steps_ = steps_in(input_.output.checkpoint_interval, dt);
+  if (input_.output.snapshot_interval > 0.0)
+    snapshot_steps_ = steps_in(input_.output.snapshot_interval, dt);
   const double rayleigh = rayleigh_time(input_.grains);
   spdlog::info("app time_step={} s, {} of the Rayleigh time {} s", dt, dt / rayleigh, rayleigh);
   if (dt > 0.3 * rayleigh)
@@ -78,6 +82,9 @@ Run::Run(const Communicator& ranks, const EngineOptions& options, const Case& in
   const auto loaded = checkpoints_.load_newest(key_);
   if (loaded) {
     resume(*loaded);
+  } else if (options_.must_continue) {
+    throw FormatError("no checkpoint of this case in " +
+                      (options_.run_directory / run_files::kCheckpoints).string());
   } else {
     begin();
   }
@@ -141,15 +148,16 @@ bool Run::is_done() const {
 }
 
 double Run::request() const {
-  if (stop_requested) return kStop;
+  if (signal_came) return kSignal;
   if (ranks_.rank() != 0) return kNothing;
-  if (options_.walltime &&
-      elapsed() + 1.5 * slowest_checkpoint_ + kFinaliseSeconds > *options_.walltime)
+  if (options_.max_seconds &&
+      elapsed() + 1.5 * slowest_checkpoint_ + kFinaliseSeconds > *options_.max_seconds)
     return kPause;
   std::error_code ignored;
-  if (step_ % 64 == 0 && fs::exists(options_.run_directory / run_files::kStop, ignored))
-    return kStop;
-  return kNothing;
+  const fs::path stop = options_.run_directory / run_files::kStop;
+  if (step_ % 64 != 0 || !fs::exists(stop, ignored)) return kNothing;
+  const auto text = read_file(stop);
+  return text && text->starts_with("signal") ? kSignal : kStop;
 }
 
 Outcome Run::execute() {
@@ -194,7 +202,13 @@ std::optional<EngineCode> Run::after_step(const World::StepResult& result) {
     reason_ += " at step " + std::to_string(step_);
     return EngineCode::kBrokeDown;
   }
+  if (const auto fault = wheel_fault()) {
+    reason_ = *fault + " at step " + std::to_string(step_);
+    return EngineCode::kBrokeDown;
+  }
   if (step_ % series_steps_ == 0) add_series_row();
+  if (snapshot_steps_ > 0 && step_ % snapshot_steps_ == 0)
+    write_snapshot(world_, options_.run_directory / run_files::kSnapshots, step_, time());
   if (const auto code = check_settling()) return code;
   const bool run_ends = end_step_ > 0 && step_ >= end_step_;
   const bool chunk_ends = until_step_ > 0 && step_ >= until_step_;
@@ -225,13 +239,27 @@ std::optional<EngineCode> Run::check_settling() {
   return std::nullopt;
 }
 
+// Wheel and box do not touch each other, so a wheel that meets the box has no reaction there.
+std::optional<std::string> Run::wheel_fault() const {
+  if (!wheel_) return std::nullopt;
+  const Vec3& axle = world_.body(kWheelBody).motion.position;
+  const double radius = wheel_->radius();
+  if (axle.z < radius) return "the wheel has sunk to the floor of the box; use a deeper bed";
+  if (axle.x < 0.25 * radius || axle.x > input_.box.length - 0.25 * radius)
+    return "the wheel has reached an end wall; use a longer box or less travel";
+  return std::nullopt;
+}
+
 EngineCode Run::end_by_request(double request) {
   if (request >= kStorage) {
     reason_ = "progress could not be written";
     return EngineCode::kStorageFailed;
   }
   if (!write_checkpoint(false)) return EngineCode::kFenceLost;
-  reason_ = request >= kStop ? "stopped on request" : "the walltime is nearly used up";
+  by_signal_ = request == kSignal;
+  reason_ = request >= kStop ? "stopped on request"
+            : by_signal_     ? "a signal asked for the end"
+                             : "the walltime is nearly used up";
   return request >= kStop ? EngineCode::kStopped : EngineCode::kPaused;
 }
 
@@ -375,6 +403,7 @@ Outcome Run::outcome(EngineCode code) const {
   out.token = options_.token;
   out.code = code;
   out.reason = reason_;
+  out.by_signal = by_signal_;
   out.step = step_;
   out.time = time();
   out.end_time = static_cast<double>(end_step_) * world_.settings().time_step;

@@ -21,12 +21,13 @@ struct EngineOptions {
   std::filesystem::path run_directory;
   std::string token;
   std::filesystem::path bed;
-  std::optional<double> until_time;  ///< [s]
-  std::optional<double> walltime;    ///< [s]
+  std::optional<double> until_time;   ///< [s]
+  std::optional<double> max_seconds;  ///< of wall time, from the engine's start [s]
+  bool must_continue = false;         ///< refuse to start anew
 };
 
-/// Asks the running engine to write a checkpoint and end; for signal handlers. Local.
-void request_stop();
+/// Asks the running engine to write a checkpoint and end with kPaused; for signal handlers. Local.
+void signal_stop();
 
 /// One attempt of one run: from its newest checkpoint, or its beginning, to the end of the chunk,
 /// of the run, of the walltime, or until it is stopped or breaks.
@@ -57,6 +58,7 @@ class Run {
   void add_series_row();
   bool report_progress(bool now);  // whether it could be written
   void write_slice();
+  std::optional<std::string> wheel_fault() const;
   void event(const std::string& kind, const CheckpointManifest& manifest);
   Outcome outcome(EngineCode code) const;
 
@@ -75,6 +77,7 @@ class Run {
   std::optional<SeriesFile> series_;  // rank 0
   CheckpointManifest newest_;
   std::string reason_;
+  bool by_signal_ = false;
   std::int64_t particles_ = 0;
   std::int64_t step_ = 0;
   std::int64_t first_step_ = 0;
@@ -82,6 +85,7 @@ class Run {
   std::int64_t until_step_ = 0;  // 0 = none
   std::int64_t series_steps_ = 1;
   std::int64_t checkpoint_steps_ = 1;
+  std::int64_t snapshot_steps_ = 0;  // 0 = none
   std::int64_t events_ = 0;
   double settled_energy_ = 0.0;
   double fall_time_ = 0.0;

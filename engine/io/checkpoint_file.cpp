@@ -3,60 +3,12 @@
 
 #include <algorithm>
 
-#include "engine/io/h5.hpp"
+#include "engine/io/h5_rows.hpp"
 
 namespace grouser {
 namespace {
 
 constexpr std::int64_t kFormatVersion = 1;
-
-template <class Number>
-hid_t memory_type();
-template <>
-hid_t memory_type<double>() {
-  return H5T_NATIVE_DOUBLE;
-}
-template <>
-hid_t memory_type<std::int64_t>() {
-  return H5T_NATIVE_INT64;
-}
-
-H5Handle file_access(const Communicator& ranks) {
-  H5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "prepare file access");
-  if (ranks.size() > 1)
-    h5_check(H5Pset_fapl_mpio(access, MPI_Comm_f2c(ranks.fortran_handle()), MPI_INFO_NULL),
-             "prepare parallel access");
-  return access;
-}
-
-H5Handle collective_transfer(const Communicator& ranks) {
-  H5Handle transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose, "prepare a transfer");
-  if (ranks.size() > 1)
-    h5_check(H5Pset_dxpl_mpio(transfer, H5FD_MPIO_COLLECTIVE), "prepare a collective transfer");
-  return transfer;
-}
-
-// A transfer may fail on one rank alone; all must then leave the file together.
-void agree(const Communicator& ranks, herr_t result, const std::string& doing) {
-  h5_check(ranks.max(std::int64_t{result < 0 ? 1 : 0}) != 0 ? -1 : 0, doing);
-}
-
-void write_text(hid_t place, const char* name, const std::string& text) {
-  H5Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "make a text type");
-  h5_check(H5Tset_size(type, std::max<std::size_t>(1, text.size())), "size a text type");
-  H5Handle space(H5Screate(H5S_SCALAR), H5Sclose, "make a scalar");
-  H5Handle attribute(H5Acreate2(place, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-                     std::string("make attribute ") + name);
-  h5_check(H5Awrite(attribute, type, text.empty() ? "" : text.data()),
-           std::string("write attribute ") + name);
-}
-
-void write_number(hid_t place, const char* name, std::int64_t value) {
-  H5Handle space(H5Screate(H5S_SCALAR), H5Sclose, "make a scalar");
-  H5Handle attribute(H5Acreate2(place, name, H5T_STD_I64LE, space, H5P_DEFAULT, H5P_DEFAULT),
-                     H5Aclose, std::string("make attribute ") + name);
-  h5_check(H5Awrite(attribute, H5T_NATIVE_INT64, &value), std::string("write attribute ") + name);
-}
 
 std::string read_text(hid_t place, const char* name) {
   H5Handle attribute(H5Aopen(place, name, H5P_DEFAULT), H5Aclose,
@@ -86,30 +38,8 @@ void write_field(const Communicator& ranks, hid_t group, const StateField& field
   for (std::size_t row = 0; row < rows; ++row)
     std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(row * row_width + column), width,
                 block.begin() + static_cast<std::ptrdiff_t>(row * width));
-  const auto all = static_cast<hsize_t>(ranks.sum(static_cast<std::int64_t>(rows)));
-  const auto before = static_cast<hsize_t>(ranks.sum_before(static_cast<std::int64_t>(rows)));
-  const hsize_t extent[2] = {all, width};
-  const hsize_t start[2] = {before, 0};
-  const hsize_t count[2] = {rows, width};
-  H5Handle file_space(H5Screate_simple(2, extent, nullptr), H5Sclose, "make a data space");
-  H5Handle dataset(H5Dcreate2(group, field.name.c_str(), memory_type<Number>(), file_space,
-                              H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                   H5Dclose, "make dataset " + field.name);
-  H5Handle memory_space(H5Screate_simple(2, count, nullptr), H5Sclose, "make a data space");
-  if (rows > 0) {
-    h5_check(H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start, nullptr, count, nullptr),
-             "select rows");
-  } else {
-    h5_check(H5Sselect_none(file_space), "select no rows");
-    h5_check(H5Sselect_none(memory_space), "select no rows");
-  }
+  const H5Handle dataset = write_rows(ranks, group, field.name, block, width);
   write_text(dataset, "unit", field.unit);
-  if (all == 0) return;  // HDF5 1.10 cannot write nothing together
-  const Number nothing{};
-  agree(ranks,
-        H5Dwrite(dataset, memory_type<Number>(), memory_space, file_space,
-                 collective_transfer(ranks), rows > 0 ? block.data() : &nothing),
-        "write dataset " + field.name);
 }
 
 // Rows first ... first + count - 1 of a dataset into one column of `values`.
@@ -133,10 +63,10 @@ void read_field(const Communicator& ranks, hid_t group, const StateField& field,
     h5_check(H5Sselect_none(file_space), "select no rows");
     h5_check(H5Sselect_none(memory_space), "select no rows");
   }
-  agree(ranks,
-        H5Dread(dataset, memory_type<Number>(), memory_space, file_space,
-                collective_transfer(ranks), block.data()),
-        "read dataset " + field.name);
+  h5_agree(ranks,
+           H5Dread(dataset, h5_type<Number>(), memory_space, file_space, collective_transfer(ranks),
+                   block.data()),
+           "read dataset " + field.name);
   for (std::size_t row = 0; row < rows; ++row)
     std::copy_n(block.begin() + static_cast<std::ptrdiff_t>(row * width), width,
                 values.begin() + static_cast<std::ptrdiff_t>(row * row_width + column));
@@ -229,9 +159,7 @@ StateTable read_table(const Communicator& ranks, hid_t file, const std::string& 
 
 void write_state_file(const Communicator& ranks, const std::filesystem::path& file,
                       const State& state, const CheckpointManifest& manifest) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  H5Handle h5(H5Fcreate(file.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, file_access(ranks)), H5Fclose,
-              "create " + file.string());
+  H5Handle h5 = create_file(ranks, file, false);
   write_number(h5, "format", kFormatVersion);
   write_number(h5, "step", manifest.step);
   write_text(h5, "case_key", manifest.case_key);

@@ -4,8 +4,10 @@
 #   real_engine.sh SCENARIO GROUSER GROUSER_ENGINE
 # Scenarios: chunks (ranks 1, 2, 4 x chunks 1, 3, 7), kills (engine killed in mid-chunk),
 # manager (engine and manager killed under a whole campaign), full_disk, truncated,
-# broken (overlap over its limit).
+# broken (overlap over its limit), sunk (the wheel meets the floor), signals (SIGTERM and SIGUSR1),
+# snapshots (VTK's own reader opens them).
 set -euo pipefail
+reader=$(realpath -- "$(dirname -- "${BASH_SOURCE[0]}")/read_vtkhdf.py")
 scenario=$1 grouser=$(realpath -- "$2") engine=$(realpath -- "$3")
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_mpi_yield_when_idle=1
 work=$(mktemp -d)
@@ -163,6 +165,62 @@ broken() {
   expect_same soft "after a breakdown"
 }
 
+sunk() {
+  prepare
+  new_run heavy wheel
+  sed -i 's/load: 30 N/load: 400 N/; s/max_overlap: 30 %/max_overlap: 99 %/; s/drive: towed/drive: slip, slip: 98 %/' heavy/case.yaml
+  launch 1 heavy --bed bed
+  [ "$code" = 30 ] || fail "a wheel at the floor ended with $code instead of 30"
+  grep -q 'floor of the box' "$outcome" || fail "the outcome does not say why: $(cat "$outcome")"
+}
+
+signals() {
+  prepare
+  new_run told wheel
+  launch 1 told --bed bed --restart required
+  [ "$code" = 21 ] || fail "--restart required without a checkpoint ended with $code"
+  for signal in TERM USR1; do
+    (sleep 0.4; pkill "-$signal" -f -- "grouser-engine --run-dir told") &
+    launch 1 told --bed bed --restart auto
+    wait
+    [ "$code" = 10 ] || fail "after SIG$signal the engine ended with $code instead of 10"
+    grep -q '"by_signal": true' "$outcome" || fail "the outcome does not name the signal"
+  done
+  launch 1 told --restart required --max-seconds 2
+  [ "$code" = 10 ] || fail "with --max-seconds the engine ended with $code instead of 10"
+  touch told/stop
+  launch 1 told
+  [ "$code" = 12 ] || fail "with a stop file the engine ended with $code instead of 12"
+  rm told/stop
+  launch 1 told
+  expect_same told "after two signals, --max-seconds and a stop file"
+}
+
+snapshots() {
+  prepare
+  for ranks in 1 2; do
+    new_run "seen$ranks" wheel
+    sed -i 's/checkpoint_interval: 20 ms/&, snapshot_interval: 50 ms/' "seen$ranks/case.yaml"
+    launch "$ranks" "seen$ranks" --bed bed
+    expect_same "seen$ranks" "with snapshots on $ranks ranks"
+  done
+  local count=0 seen
+  for file in seen1/snapshots/*.vtkhdf; do
+    h5diff "$file" "seen2/snapshots/$(basename "$file")" || fail "$file differs between 1 and 2 ranks"
+    case $file in
+      */grains_*)
+        seen=$(/usr/bin/python3 "$reader" "$file" 1 id 'radius [m]' 'velocity [m s-1]' \
+          'spin [rad s-1]' 'displacement [m]') || fail "$seen"
+        [ "${seen%% *}" = "$(sed -n 's/.*"particles": \(.*\),/\1/p' "$outcome")" ] ||
+          fail "$file has ${seen%% *} points" ;;
+      */wheel_*) seen=$(/usr/bin/python3 "$reader" "$file" 5) || fail "$seen" ;;
+    esac
+    echo "$(basename "$file"): $seen"
+    count=$((count + 1))
+  done
+  [ "$count" = 6 ] || fail "$count snapshots instead of 6"
+}
+
 campaign_yaml() {
   printf 'grouser: 1\ncampaign: small\nscheduler: local\nresources: {ranks: %s}\nchunks: {count: 3}\n' "$1"
   printf 'retries: {infrastructure: 50}\ncase:\n'
@@ -171,7 +229,7 @@ campaign_yaml() {
   printf '      - {label: slip20, set: {wheel.drive: slip, wheel.slip: 20 %%}}\n'
 }
 
-final_hashes() { sqlite3 "$1/grouser.db" "select label, state_hash from run order by label"; }
+final_hashes() { "$grouser" query -C "$1" "SELECT label, state_hash FROM v_runs ORDER BY label"; }
 
 manager() {
   export GROUSER_ENGINE=$engine

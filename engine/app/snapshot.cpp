@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/app/snapshot.hpp"
+
+#include <cstdio>
+
+#include "engine/io/vtkhdf.hpp"
+
+namespace grouser {
+namespace {
+
+std::filesystem::path file_of(const std::filesystem::path& directory, const std::string& name,
+                              std::int64_t step) {
+  char number[24];
+  std::snprintf(number, sizeof number, "%012lld", static_cast<long long>(step));
+  return directory / (name + "_" + number + ".vtkhdf");
+}
+
+void push(std::vector<double>& to, const Vec3& v) { to.insert(to.end(), {v.x, v.y, v.z}); }
+
+StateTable sorted_grains(const World& world) {
+  StateTable table;
+  table.name = "grains";
+  table.key_count = world.particle_count();
+  table.real_fields = {{"position", "m", 3},
+                       {"radius", "m", 1},
+                       {"velocity", "m s-1", 3},
+                       {"spin", "rad s-1", 3},
+                       {"displacement", "m", 3}};
+  for (std::size_t i = 0; i < world.owned(); ++i) {
+    const Particle& p = world.particles()[i];
+    table.integers.insert(table.integers.end(), {p.id, 0});
+    push(table.reals, p.position);
+    table.reals.push_back(p.radius);
+    push(table.reals, p.velocity);
+    push(table.reals, p.spin);
+    push(table.reals, p.position - world.origins()[i]);
+  }
+  sort_rows(world.ranks(), table);
+  return table;
+}
+
+// One field of the rows in single precision.
+std::vector<float> column_of(const StateTable& table, std::size_t from, std::size_t width) {
+  std::vector<float> values;
+  values.reserve(table.rows() * width);
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    for (std::size_t k = 0; k < width; ++k)
+      values.push_back(static_cast<float>(table.reals[row * table.real_width() + from + k]));
+  return values;
+}
+
+VtkGrid grid_of_grains(const World& world) {
+  const StateTable table = sorted_grains(world);
+  VtkGrid grid;
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    grid.ids.push_back(table.integers[row * table.integer_width()]);
+  std::size_t from = 0;
+  for (const StateField& field : table.real_fields) {
+    const auto width = static_cast<std::size_t>(field.width);
+    if (field.name == "position")
+      grid.points = column_of(table, from, width);
+    else
+      grid.fields.push_back({field.name + " [" + field.unit + "]", width == 1 ? 0 : width,
+                             column_of(table, from, width)});
+    from += width;
+  }
+  return grid;
+}
+
+VtkGrid grid_of_body(const Body& body, bool is_mine) {
+  VtkGrid grid;
+  grid.has_triangles = true;
+  if (!is_mine) return grid;
+  const BodyFrame frame(body.motion);
+  for (const Vec3& vertex : body.search->mesh().vertices) {
+    const Vec3 at = frame.to_world(vertex);
+    for (const double x : {at.x, at.y, at.z}) grid.points.push_back(static_cast<float>(x));
+  }
+  for (const auto& facet : body.search->mesh().facets)
+    grid.triangles.insert(grid.triangles.end(), facet.begin(), facet.end());
+  return grid;
+}
+
+}  // namespace
+
+void write_snapshot(const World& world, const std::filesystem::path& directory, std::int64_t step,
+                    double time) {
+  VtkGrid grains = grid_of_grains(world);
+  grains.time = time;
+  write_vtkhdf(world.ranks(), file_of(directory, "grains", step), grains);
+  for (std::size_t b = 0; b < world.bodies(); ++b) {
+    const Body& body = world.body(b);
+    if (!body.turns) continue;
+    VtkGrid surface = grid_of_body(body, world.ranks().rank() == 0);
+    surface.time = time;
+    write_vtkhdf(world.ranks(), file_of(directory, body.name, step), surface);
+  }
+}
+
+}  // namespace grouser

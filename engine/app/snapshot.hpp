@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "engine/dem/world.hpp"
+
+namespace grouser {
+
+/// Writes grains_STEP.vtkhdf, sorted by id and so the same on any number of ranks, with radius,
+/// velocity, spin and displacement since the start of the run; and NAME_STEP.vtkhdf with the
+/// surface of every body that turns. @throws StorageError on every rank. Collective.
+void write_snapshot(const World& world, const std::filesystem::path& directory, std::int64_t step,
+                    double time);
+
+}  // namespace grouser
