@@ -28,7 +28,7 @@ Case read_frozen_case(const Communicator& ranks, const std::filesystem::path& fi
     // The surface file's path counts from the run directory, as a campaign freezes it.
     if (input.wheel.profile == "stl")
       input.wheel.stl_file = (file.parent_path() / input.wheel.stl_file).string();
-    if (problems.empty() && input.has_wheel) wheel_mesh(input.wheel).check("wheel");
+    if (problems.empty() && input.has_wheel) wheel_mesh(input.wheel).check_closed("wheel");
   } catch (const ConfigError& error) {
     problems = error.problems();
   } catch (const StorageError& error) {

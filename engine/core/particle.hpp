@@ -9,7 +9,7 @@ namespace grouser {
 
 /// A spherical grain. One record of 96 bytes, read whole by the contact sweep.
 /// Velocities stand half a time step behind the position (leapfrog).
-struct Particle {
+struct alignas(32) Particle {
   Vec3 position;        ///< of the centre [m]
   double radius = 0.0;  ///< [m]
   Vec3 velocity;        ///< [m s-1]

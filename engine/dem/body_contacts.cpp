@@ -81,10 +81,11 @@ double BodyContacts::sweep(const Law& law, const Rolling& rolling,
       at.radius = p.radius;
       at.mass = p.mass;
       at.normal = (1.0 / now[t].distance) * (p.position - point);
-      const Vec3 arm = point - body.motion.position;
+      // Half an overlap inside either surface, as seen from the grain.
+      const double reach = p.radius - 0.5 * at.overlap;
+      const Vec3 arm = p.position - reach * at.normal - body.motion.position;
       const Vec3 velocity = p.velocity - body.motion.velocity - cross(body_spin, arm);
       at.normal_velocity = dot(velocity, at.normal);
-      const double reach = p.radius - 0.5 * at.overlap;
       at.slip_velocity =
           velocity - at.normal_velocity * at.normal - reach * cross(p.spin, at.normal);
       const Vec3 spin = p.spin - body_spin;

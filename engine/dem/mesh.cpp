@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
+#include <utility>
 
 #include "base/errors.hpp"
+#include "base/units.hpp"
 
 namespace grouser {
 namespace {
@@ -53,6 +56,36 @@ void Mesh::check(const std::string& name) const {
     // A height under 1e-9 of the longest side leaves no digits for its normal.
     if (!(norm(cross(u, v)) > 1e-9 * longest * longest))
       problems.push_back({name, 0, 0, which, "has no area", "remove or mend it"});
+  }
+  if (!problems.empty()) throw ConfigError(problems);
+}
+
+void Mesh::check_closed(const std::string& name) const {
+  check(name);
+  // Passes of each edge, from its lower to its higher vertex less those the other way.
+  std::map<std::pair<int, int>, std::pair<int, int>> passes;
+  for (const auto& facet : facets)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int from = facet[k];
+      const int to = facet[(k + 1) % 3];
+      auto& [up, down] = passes[{std::min(from, to), std::max(from, to)}];
+      ++(from < to ? up : down);
+    }
+  std::vector<Problem> problems;
+  for (const auto& [edge, count] : passes) {
+    if (count.first == 1 && count.second == 1) continue;
+    const auto text_of = [&](int vertex) {
+      const Vec3& v = vertices[static_cast<std::size_t>(vertex)];
+      std::string text = format_number(v.x);
+      text.append(" ").append(format_number(v.y)).append(" ").append(format_number(v.z));
+      return text;
+    };
+    problems.push_back({name, 0, 0, "edge from " + text_of(edge.first) + " to " + text_of(edge.second),
+                        "belongs to " + std::to_string(count.first + count.second) + " facets, " +
+                            std::to_string(count.first) + " of them one way round",
+                        "the surface must be closed and its facets turned alike; mend it in a "
+                        "mesh program (join vertices, fix normals)"});
+    if (problems.size() == 10) break;
   }
   if (!problems.empty()) throw ConfigError(problems);
 }

@@ -19,6 +19,10 @@ struct Mesh {
   /// @throws ConfigError when a facet has no area, names a vertex that is not there or the mesh is
   /// empty; `name` says whose mesh it is. Local.
   void check(const std::string& name) const;
+
+  /// @throws ConfigError as check, and when the surface is not closed: every edge must belong to
+  /// two facets that pass it in opposite directions, or a grain at a gap would touch twice. Local.
+  void check_closed(const std::string& name) const;
 };
 
 /// Reads an STL surface, text or binary; vertices at the same place become one.

@@ -2,19 +2,40 @@
 #include "engine/dem/pair_contacts.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <limits>
 
 #include "base/check.hpp"
-#include "engine/dem/cell_grid.hpp"
+#include "engine/core/pack.hpp"
 #include "engine/dem/history_view.hpp"
 
 namespace grouser {
 namespace {
 
-bool touching_within(const Particle& a, const Particle& b, double reach) {
-  const double sum = a.radius + b.radius + reach;
-  return norm2(a.position - b.position) < sum * sum;
-}
+constexpr std::size_t kLanes = Pack::kLanes;
+constexpr std::uint32_t kNoSlot = std::numeric_limits<std::uint32_t>::max();
+
+// Grains whose contacts are evaluated before their forces are added up; the results in between
+// stay in the nearest caches.
+constexpr std::size_t kChunk = 256;
+
+// Numbers of a slot that do not change: both radii, effective radius, effective mass.
+constexpr std::size_t kShape = 4;
+
+// Numbers of a slot's result, each vector filled up to four: force on the lower id, moment on the
+// lower id, moment on the higher id.
+constexpr std::size_t kResult = 12;
+
+// Steps that the slots should last at the present speed, within these shares of the skin.
+constexpr double kSlotSteps = 24.0;
+constexpr double kLeastGap = 0.04;
+constexpr double kLargestGap = 0.5;
+
+// The records of four grains, lane by lane: the four numbers that begin at `member`.
+struct Columns {
+  Pack x, y, z, rest;
+};
 
 }  // namespace
 
@@ -29,206 +50,289 @@ void PairContacts::set_laws(ContactLaw law, RollingLaw rolling) {
 
 void PairContacts::build(const std::vector<Particle>& particles, std::size_t owned, double skin,
                          const ContactRecords& records) {
-  GROUSER_CHECK(particles.size() < std::numeric_limits<std::uint32_t>::max());
-  owned_ = owned;
-  list_pairs(particles, skin);
-  take_histories(particles, records);
-  order_by_partner(particles);
+  GROUSER_CHECK(records.particles() == owned && records.value_width() == history_width_);
+  skin_ = skin;
+  list_.build(particles, owned, skin);
+  GROUSER_CHECK(list_.pairs() < std::numeric_limits<std::int32_t>::max());
+  slot_of_.assign(list_.pairs(), kNoSlot);
+  refresh(particles, &records);
 }
 
-void PairContacts::list_pairs(const std::vector<Particle>& particles, double skin) {
-  start_.assign(1, 0);
-  partner_.clear();
-  if (particles.empty()) return;
-  Vec3 low = particles[0].position;
-  Vec3 high = low;
-  double radius = 0.0;
-  for (const Particle& p : particles) {
-    low = {std::min(low.x, p.position.x), std::min(low.y, p.position.y),
-           std::min(low.z, p.position.z)};
-    high = {std::max(high.x, p.position.x), std::max(high.y, p.position.y),
-            std::max(high.z, p.position.z)};
-    radius = std::max(radius, p.radius);
-  }
-  const CellGrid grid(low, high, 2.0 * radius + skin, 2 * particles.size() + 64);
-  std::vector<std::uint32_t> first(grid.cells() + 1, 0);
-  std::vector<std::uint32_t> cell(particles.size());
-  for (std::size_t i = 0; i < particles.size(); ++i) {
-    cell[i] = static_cast<std::uint32_t>(grid.index(grid.cell_of(particles[i].position)));
-    ++first[cell[i] + 1];
-  }
-  for (std::size_t c = 1; c < first.size(); ++c) first[c] += first[c - 1];
-  std::vector<std::uint32_t> members(particles.size());
-  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-  for (std::size_t i = 0; i < particles.size(); ++i)
-    members[next[cell[i]]++] = static_cast<std::uint32_t>(i);
+void PairContacts::note_travel(double distance) {
+  travel_ += distance;
+  last_travel_ = distance;
+}
 
-  for (std::size_t i = 0; i < owned_; ++i) {
-    const std::array<int, 3> at = grid.cell_of(particles[i].position);
-    const int z_low = std::max(at[2] - 1, 0);
-    const int z_high = std::min(at[2] + 1, grid.count(2) - 1);
-    for (int x = std::max(at[0] - 1, 0); x <= std::min(at[0] + 1, grid.count(0) - 1); ++x)
-      for (int y = std::max(at[1] - 1, 0); y <= std::min(at[1] + 1, grid.count(1) - 1); ++y) {
-        // Cells along z follow one another, so their members do too.
-        const std::uint32_t from = first[grid.index({x, y, z_low})];
-        const std::uint32_t to = first[grid.index({x, y, z_high}) + 1];
-        for (std::uint32_t m = from; m < to; ++m) {
-          const std::uint32_t j = members[m];
-          if (j > i && touching_within(particles[i], particles[j], skin)) partner_.push_back(j);
-        }
+// Finds the pairs that may touch soon. Histories come from `records`, or from the slots before.
+void PairContacts::refresh(const std::vector<Particle>& particles, const ContactRecords* records) {
+  gap_ = std::clamp(2.0 * kSlotSteps * last_travel_, kLeastGap * skin_, kLargestGap * skin_);
+  travel_ = 0.0;
+  Slots next;
+  next.lower.reserve(slots_.lower.size());
+  next.higher.reserve(slots_.lower.size());
+  next.shape.reserve(slots_.shape.size());
+  next.history.reserve(slots_.history.size());
+  next.touching.reserve(slots_.touching.size());
+  chunk_end_.clear();
+  for (std::size_t i = 0; i < list_.owned(); ++i) {
+    for (std::uint32_t k = list_.begin(i); k < list_.end(i); ++k) {
+      if (is_within(particles[i], particles[list_.partner(k)], gap_)) {
+        const auto slot = static_cast<std::uint32_t>(next.lower.size());
+        add_slot(particles, i, k, records, next);
+        slot_of_[k] = slot;
+      } else {
+        slot_of_[k] = kNoSlot;
       }
-    start_.push_back(static_cast<std::uint32_t>(partner_.size()));
+    }
+    if ((i + 1) % kChunk == 0 || i + 1 == list_.owned()) {
+      add_padding(next);
+      chunk_end_.push_back(static_cast<std::uint32_t>(next.lower.size()));
+    }
   }
-  GROUSER_CHECK(partner_.size() < std::numeric_limits<std::int32_t>::max());
+  slots_ = std::move(next);
+  order_sides();
 }
 
-void PairContacts::take_histories(const std::vector<Particle>& particles,
-                                  const ContactRecords& records) {
-  GROUSER_CHECK(records.particles() == owned_ && records.value_width() == history_width_);
-  history_.assign(partner_.size() * history_width_, 0.0);
-  output_of_.assign(partner_.size(), -1);
-  for (std::size_t i = 0; i < owned_; ++i)
-    for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k)
-      for (std::size_t r = records.begin(i); r < records.end(i); ++r) {
-        if (records.names(r)[0] != particles[partner_[k]].id) continue;
-        std::copy_n(records.values(r), history_width_, &history_[k * history_width_]);
-        output_of_[k] = 0;  // has touched; the next sweep sets the true place
-        break;
+void PairContacts::add_slot(const std::vector<Particle>& particles, std::size_t i,
+                            std::uint32_t pair, const ContactRecords* records, Slots& next) const {
+  const std::size_t lane = next.lower.size() % kLanes;
+  if (lane == 0) {
+    next.shape.resize(next.shape.size() + kShape * kLanes, 0.0);
+    next.history.resize(next.history.size() + history_width_ * kLanes, 0.0);
+    next.touching.push_back(0);
+  }
+  const std::uint32_t j = list_.partner(pair);
+  const bool is_lower = particles[i].id < particles[j].id;
+  const Particle& a = is_lower ? particles[i] : particles[j];
+  const Particle& b = is_lower ? particles[j] : particles[i];
+  next.lower.push_back(is_lower ? static_cast<std::uint32_t>(i) : j);
+  next.higher.push_back(is_lower ? j : static_cast<std::uint32_t>(i));
+
+  double* const shape = next.shape.data() + next.shape.size() - kShape * kLanes + lane;
+  shape[0] = a.radius;
+  shape[kLanes] = b.radius;
+  shape[2 * kLanes] = a.radius * b.radius / (a.radius + b.radius);
+  shape[3 * kLanes] = a.mass * b.mass / (a.mass + b.mass);
+
+  std::array<double, 16> values{};
+  bool touches = false;
+  if (records == nullptr) {
+    if (slot_of_[pair] == kNoSlot || !is_touching(slot_of_[pair])) return;
+    touches = true;
+    history_of(slots_, slot_of_[pair], values.data());
+  } else {
+    for (std::size_t r = records->begin(i); r < records->end(i) && !touches; ++r) {
+      if (records->names(r)[0] != particles[j].id) continue;
+      std::copy_n(records->values(r), history_width_, values.begin());
+      touches = true;
+    }
+    if (!touches) return;
+  }
+  double* const history =
+      next.history.data() + next.history.size() - history_width_ * kLanes + lane;
+  for (std::size_t c = 0; c < history_width_; ++c) history[c * kLanes] = values[c];
+  next.touching.back() |= static_cast<std::uint8_t>(1u << lane);
+}
+
+// A grain against itself, without a radius: never touches.
+void PairContacts::add_padding(Slots& next) const {
+  while (next.lower.size() % kLanes != 0) {
+    next.lower.push_back(next.lower.back());
+    next.higher.push_back(next.lower.back());
+  }
+}
+
+// Lists each grain's slots by partner id, and finds how far back an adding grain looks.
+void PairContacts::order_sides() {
+  side_start_.assign(1, 0);
+  side_split_.clear();
+  sides_.clear();
+  std::uint32_t window = kLanes;
+  for (std::size_t i = 0; i < list_.owned(); ++i) {
+    const std::uint32_t end = chunk_end_[i / kChunk];
+    const auto take = [&](std::uint32_t from, std::uint32_t to) {
+      for (std::uint32_t at = from; at < to; ++at) {
+        const std::uint32_t slot = slot_of_[list_.by_partner()[at]];
+        if (slot == kNoSlot) continue;
+        sides_.push_back(slot);
+        window = std::max(window, end - slot);
       }
+    };
+    take(list_.side_begin(i), list_.side_split(i));
+    side_split_.push_back(static_cast<std::uint32_t>(sides_.size()));
+    take(list_.side_split(i), list_.side_end(i));
+    side_start_.push_back(static_cast<std::uint32_t>(sides_.size()));
+  }
+  const std::uint32_t capacity = std::bit_ceil(window);
+  result_mask_ = capacity - 1;
+  if (results_.size() < capacity * kResult) results_.resize(capacity * kResult);
 }
 
-void PairContacts::order_by_partner(const std::vector<Particle>& particles) {
-  by_partner_start_.assign(owned_ + 1, 0);
-  for (std::size_t i = 0; i < owned_; ++i)
-    for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k) {
-      ++by_partner_start_[i + 1];
-      if (partner_[k] < owned_) ++by_partner_start_[partner_[k] + 1];
-    }
-  for (std::size_t i = 0; i < owned_; ++i) by_partner_start_[i + 1] += by_partner_start_[i];
-  by_partner_.resize(by_partner_start_[owned_]);
-  std::vector<std::int64_t> partner_id(by_partner_.size());
-  std::vector<std::uint32_t> next(by_partner_start_.begin(), by_partner_start_.end() - 1);
-  const auto put = [&](std::size_t grain, std::uint32_t pair, std::int64_t other) {
-    std::uint32_t place = next[grain]++;
-    // Insertion sort: a grain has about ten neighbours.
-    while (place > by_partner_start_[grain] && partner_id[place - 1] > other) {
-      partner_id[place] = partner_id[place - 1];
-      by_partner_[place] = by_partner_[place - 1];
-      --place;
-    }
-    partner_id[place] = other;
-    by_partner_[place] = pair;
-  };
-  for (std::size_t i = 0; i < owned_; ++i)
-    for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k) {
-      put(i, k, particles[partner_[k]].id);
-      if (partner_[k] < owned_) put(partner_[k], k, particles[i].id);
-    }
-  higher_from_.resize(owned_);
-  for (std::size_t i = 0; i < owned_; ++i)
-    higher_from_[i] = static_cast<std::uint32_t>(
-        std::upper_bound(partner_id.begin() + by_partner_start_[i],
-                         partner_id.begin() + by_partner_start_[i + 1], particles[i].id) -
-        partner_id.begin());
+bool PairContacts::is_touching(std::uint32_t slot) const {
+  return (slots_.touching[slot / kLanes] >> (slot % kLanes) & 1u) != 0;
+}
+
+void PairContacts::history_of(const Slots& slots, std::uint32_t slot, double* values) const {
+  const double* const pack =
+      slots.history.data() + slot / kLanes * history_width_ * kLanes + slot % kLanes;
+  for (std::size_t c = 0; c < history_width_; ++c) values[c] = pack[c * kLanes];
 }
 
 template <class Law, class Rolling>
 double PairContacts::sweep(const Law& law, const Rolling& rolling,
-                           const std::vector<Particle>& particles, double time_step) {
-  using View = HistoryView<Law, Rolling>;
-  constexpr std::size_t kWidth = View::kWidth;
-  double largest = 0.0;
-  outputs_.clear();
-  for (std::size_t i = 0; i < owned_; ++i) {
-    for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k) {
-      const bool first_is_lower = particles[i].id < particles[partner_[k]].id;
-      const Particle& a = first_is_lower ? particles[i] : particles[partner_[k]];
-      const Particle& b = first_is_lower ? particles[partner_[k]] : particles[i];
-      const Vec3 apart = a.position - b.position;
-      const double distance2 = norm2(apart);
-      const double reach = a.radius + b.radius;
-      if (distance2 >= reach * reach) {
-        if (output_of_[k] >= 0) {
-          std::fill_n(&history_[k * kWidth], kWidth, 0.0);
-          output_of_[k] = -1;
-        }
+                           const std::vector<Particle>& particles, double time_step,
+                           std::vector<Vec3>& force, std::vector<Vec3>& moment) {
+  using View = HistoryView<Law, Rolling, Pack>;
+  const Particle* const grains = particles.data();
+  const auto columns = [&](const std::uint32_t* at, auto member) {
+    Columns c{Pack::load(&(grains[at[0]].*member).x), Pack::load(&(grains[at[1]].*member).x),
+              Pack::load(&(grains[at[2]].*member).x), Pack::load(&(grains[at[3]].*member).x)};
+    transpose(c.x, c.y, c.z, c.rest);
+    return c;
+  };
+  // Differences are formed record by record: half the work of turning both.
+  const auto difference = [&](const std::uint32_t* a, const std::uint32_t* b, auto member) {
+    const auto row = [&](std::size_t lane) {
+      return Pack::load(&(grains[a[lane]].*member).x) - Pack::load(&(grains[b[lane]].*member).x);
+    };
+    Columns c{row(0), row(1), row(2), row(3)};
+    transpose(c.x, c.y, c.z, c.rest);
+    return Vec3T<Pack>{c.x, c.y, c.z};
+  };
+  const auto put = [](double* to, Vec3T<Pack> v) {
+    Pack rest;
+    transpose(v.x, v.y, v.z, rest);
+    v.x.store(to);
+    v.y.store(to + kResult);
+    v.z.store(to + 2 * kResult);
+    rest.store(to + 3 * kResult);
+  };
+
+  Pack largest;
+  std::uint32_t slot = 0;
+  for (std::size_t chunk = 0; chunk < chunk_end_.size(); ++chunk) {
+    for (; slot < chunk_end_[chunk]; slot += kLanes) {
+      const std::uint32_t* const lower = &slots_.lower[slot];
+      const std::uint32_t* const higher = &slots_.higher[slot];
+      const double* const shape = &slots_.shape[slot * kShape];
+      double* const stored = slots_.history.data() + slot * View::kWidth;
+      double* const result = &results_[(slot & result_mask_) * kResult];
+      std::uint8_t& touching = slots_.touching[slot / kLanes];
+
+      const Vec3T<Pack> apart = difference(lower, higher, &Particle::position);
+      const Pack radius_a = Pack::load(shape);
+      const Pack radius_b = Pack::load(shape + kLanes);
+      const Pack reach = radius_a + radius_b;
+      const Pack distance2 = norm2(apart);
+      // Written so that a NaN counts as a touch and spreads to where it is noticed.
+      const PackMask touches = !(distance2 >= reach * reach);
+      const unsigned touches_bits = touches.to_unsigned();
+      if (touches_bits == 0) {
+        std::fill_n(result, kResult * kLanes, 0.0);
+        if (touching != 0) std::fill_n(stored, View::kWidth * kLanes, 0.0);
+        touching = 0;
         continue;
       }
-      const double distance = std::sqrt(distance2);
-      ContactPoint at;
+      touching = static_cast<std::uint8_t>(touches_bits);
+
+      const Pack distance = sqrt(distance2);
+      ContactPointT<Pack> at;
       at.overlap = reach - distance;
-      at.radius = a.radius * b.radius / reach;
-      at.mass = a.mass * b.mass / (a.mass + b.mass);
-      at.normal = (1.0 / distance) * apart;
-      const Vec3 velocity = a.velocity - b.velocity;
+      at.radius = Pack::load(shape + 2 * kLanes);
+      at.mass = Pack::load(shape + 3 * kLanes);
+      at.normal = (Pack(1.0) / distance) * apart;
+      const Vec3T<Pack> velocity = difference(lower, higher, &Particle::velocity);
       at.normal_velocity = dot(velocity, at.normal);
-      const double half = 0.5 * at.overlap;
-      const Vec3 rim = (a.radius - half) * a.spin + (b.radius - half) * b.spin;
-      at.slip_velocity = velocity - at.normal_velocity * at.normal - cross(rim, at.normal);
-      const Vec3 spin = a.spin - b.spin;
+      const Pack half = Pack(0.5) * at.overlap;
+      const Pack arm_a = radius_a - half;
+      const Pack arm_b = radius_b - half;
+      const Columns a = columns(lower, &Particle::spin);
+      const Columns b = columns(higher, &Particle::spin);
+      const Vec3T<Pack> spin_a{a.x, a.y, a.z};
+      const Vec3T<Pack> spin_b{b.x, b.y, b.z};
+      at.slip_velocity = velocity - at.normal_velocity * at.normal -
+                         cross(arm_a * spin_a + arm_b * spin_b, at.normal);
+      const Vec3T<Pack> spin = spin_a - spin_b;
       at.rolling_rate = spin - dot(spin, at.normal) * at.normal;
 
-      typename Law::History contact_history;
-      typename Rolling::History rolling_history;
-      View::load(&history_[k * kWidth], contact_history, rolling_history);
-      const ContactForce force = law.evaluate(at, contact_history, time_step);
-      PairForce out;
-      out.moment = rolling.evaluate(at, force, rolling_history, time_step);
-      View::store(&history_[k * kWidth], contact_history, rolling_history);
-      out.force = force.normal * at.normal + force.tangential;
-      out.twist = cross(force.tangential, at.normal);
-      out.half_overlap = half;
-      output_of_[k] = static_cast<std::int32_t>(outputs_.size());
-      outputs_.push_back(out);
-      largest = std::max(largest, at.overlap / std::min(a.radius, b.radius));
+      typename View::LawHistory contact_history;
+      typename View::RollingHistory rolling_history;
+      View::load(stored, contact_history, rolling_history);
+      const ContactForceT<Pack> contact = law.evaluate(at, contact_history, time_step);
+      const Vec3T<Pack> turning = rolling.evaluate(at, contact, rolling_history, time_step);
+      View::store(stored, contact_history, rolling_history);
+      Vec3T<Pack> on_lower = contact.normal * at.normal + contact.tangential;
+      const Vec3T<Pack> twist = cross(contact.tangential, at.normal);
+      Vec3T<Pack> turn_a = arm_a * twist + turning;
+      Vec3T<Pack> turn_b = arm_b * twist - turning;
+      Pack share = at.overlap / select(radius_a < radius_b, radius_a, radius_b);
+      if (touches_bits != (1u << kLanes) - 1) {
+        const Vec3T<Pack> none;
+        on_lower = select(touches, on_lower, none);
+        turn_a = select(touches, turn_a, none);
+        turn_b = select(touches, turn_b, none);
+        share = select(touches, share, Pack());
+        for (std::size_t c = 0; c < View::kWidth; ++c)
+          select(touches, Pack::load(stored + c * kLanes), Pack()).store(stored + c * kLanes);
+      }
+      largest = select(share > largest, share, largest);
+      put(result, on_lower);
+      put(result + 4, turn_a);
+      put(result + 8, turn_b);
     }
+    add_up(chunk, force, moment);
   }
-  return largest;
+  return std::max({largest[0], largest[1], largest[2], largest[3]});
+}
+
+// Forces of a chunk's grains: all their slots have been evaluated by now.
+void PairContacts::add_up(std::size_t chunk, std::vector<Vec3>& force,
+                          std::vector<Vec3>& moment) const {
+  const std::size_t end = std::min((chunk + 1) * kChunk, list_.owned());
+  for (std::size_t i = chunk * kChunk; i < end; ++i) {
+    Pack sum;
+    Pack turn;
+    const auto result_of = [&](std::uint32_t side) {
+      return &results_[(sides_[side] & result_mask_) * kResult];
+    };
+    std::uint32_t at = side_start_[i];
+    for (; at < side_split_[i]; ++at) {
+      const double* const result = result_of(at);
+      sum -= Pack::load(result);
+      turn += Pack::load(result + 8);
+    }
+    for (; at < side_start_[i + 1]; ++at) {
+      const double* const result = result_of(at);
+      sum += Pack::load(result);
+      turn += Pack::load(result + 4);
+    }
+    force[i] += Vec3{sum[0], sum[1], sum[2]};
+    moment[i] += Vec3{turn[0], turn[1], turn[2]};
+  }
 }
 
 double PairContacts::add_forces(const std::vector<Particle>& particles, double time_step,
                                 std::vector<Vec3>& force, std::vector<Vec3>& moment) {
-  const double largest =
-      std::visit([&](const auto& law,
-                     const auto& rolling) { return sweep(law, rolling, particles, time_step); },
-                 law_, rolling_);
-  for (std::size_t i = 0; i < owned_; ++i) {
-    Vec3 sum;
-    Vec3 turn;
-    const double radius = particles[i].radius;
-    std::uint32_t at = by_partner_start_[i];
-    for (; at < higher_from_[i]; ++at) {
-      const std::int32_t out = output_of_[by_partner_[at]];
-      if (out < 0) continue;
-      const PairForce& pair = outputs_[static_cast<std::size_t>(out)];
-      sum -= pair.force;
-      turn += (radius - pair.half_overlap) * pair.twist - pair.moment;
-    }
-    for (; at < by_partner_start_[i + 1]; ++at) {
-      const std::int32_t out = output_of_[by_partner_[at]];
-      if (out < 0) continue;
-      const PairForce& pair = outputs_[static_cast<std::size_t>(out)];
-      sum += pair.force;
-      turn += (radius - pair.half_overlap) * pair.twist + pair.moment;
-    }
-    force[i] += sum;
-    moment[i] += turn;
-  }
-  return largest;
+  // Two grains may have come closer by twice the way of one; a hair more for rounding.
+  if (2.0 * travel_ * (1.0 + 1e-9) >= gap_) refresh(particles, nullptr);
+  return std::visit(
+      [&](const auto& law, const auto& rolling) {
+        return sweep(law, rolling, particles, time_step, force, moment);
+      },
+      law_, rolling_);
 }
 
 ContactRecords PairContacts::records(const std::vector<Particle>& particles) const {
   ContactRecords out = empty_records();
-  for (std::size_t i = 0; i < owned_; ++i) {
-    for (std::uint32_t at = by_partner_start_[i]; at < by_partner_start_[i + 1]; ++at) {
-      const std::uint32_t k = by_partner_[at];
-      if (output_of_[k] < 0) continue;
-      // The pair is listed under its first grain; the partner is whichever of the two is not i.
-      const bool is_first = k >= start_[i] && k < start_[i + 1];
-      const auto first = static_cast<std::size_t>(
-          std::upper_bound(start_.begin(), start_.end(), k) - start_.begin() - 1);
-      const std::int64_t other = is_first ? particles[partner_[k]].id : particles[first].id;
-      out.add(&other, history_.data() + k * history_width_);
+  std::array<double, 16> values{};
+  for (std::size_t i = 0; i < list_.owned(); ++i) {
+    for (std::uint32_t at = side_start_[i]; at < side_start_[i + 1]; ++at) {
+      const std::uint32_t slot = sides_[at];
+      if (!is_touching(slot)) continue;
+      const std::uint32_t lower = slots_.lower[slot];
+      const std::int64_t other = particles[lower == i ? slots_.higher[slot] : lower].id;
+      history_of(slots_, slot, values.data());
+      out.add(&other, values.data());
     }
     out.close_particle();
   }
@@ -244,13 +348,10 @@ std::vector<StateField> PairContacts::history_fields() const {
   return fields;
 }
 
-std::int64_t PairContacts::count(const std::vector<Particle>& particles) const {
+std::int64_t PairContacts::count() const {
   std::int64_t total = 0;
-  for (std::size_t i = 0; i < owned_; ++i)
-    for (std::uint32_t k = start_[i]; k < start_[i + 1]; ++k) {
-      const std::uint32_t j = partner_[k];
-      if (output_of_[k] >= 0 && (j < owned_ || particles[i].id < particles[j].id)) ++total;
-    }
+  for (std::uint32_t slot = 0; slot < slots_.lower.size(); ++slot)
+    if (is_touching(slot) && slots_.lower[slot] < list_.owned()) ++total;
   return total;
 }
 

@@ -107,6 +107,7 @@ World::StepResult World::step(double request) {
   }
   moved_ += totals.maxima[0] * settings_.time_step;
   near_moved_ += totals.maxima[0] * settings_.time_step;
+  pairs_.note_travel(totals.maxima[0] * settings_.time_step);
   if (moved_ > 0.5 * settings_.skin) moved_ = ranks_.max(displacement());
   must_rebuild_ = moved_ > 0.5 * settings_.skin;
   return result;
@@ -274,7 +275,7 @@ double World::kinetic_energy() const {
 }
 
 std::int64_t World::contacts() const {
-  std::int64_t local = pairs_.count(particles_);
+  std::int64_t local = pairs_.count();
   for (const BodyContacts& contacts : body_contacts_)
     local += static_cast<std::int64_t>(contacts.count());
   return ranks_.sum(local);

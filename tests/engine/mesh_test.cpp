@@ -115,7 +115,7 @@ TEST(Mesh, ADrumsSurfaceIsClosed) {
     wheel.grouser_height = 0.0045;
     wheel.grouser_width = 0.002;
     const Mesh mesh = wheel_mesh(wheel);
-    mesh.check(profile);
+    mesh.check_closed(profile);
     // In a closed, consistently turned surface every edge is run through once in each direction.
     std::map<std::pair<int, int>, int> edges;
     for (const auto& f : mesh.facets)
@@ -127,6 +127,27 @@ TEST(Mesh, ADrumsSurfaceIsClosed) {
     double farthest = 0.0;
     for (const Vec3& v : mesh.vertices) farthest = std::max(farthest, std::hypot(v.x, v.z));
     EXPECT_NEAR(farthest, 0.0625, 1e-12);
+  }
+}
+
+TEST(Mesh, AGapAndATurnedFacetAreNamed) {
+  WheelCase wheel;
+  wheel.diameter = 0.1;
+  wheel.width = 0.05;
+  wheel.facets = 12;
+  Mesh torn = wheel_mesh(wheel);
+  torn.facets.pop_back();
+  EXPECT_NO_THROW(torn.check("wheel"));
+  Mesh turned = wheel_mesh(wheel);
+  std::swap(turned.facets[0][0], turned.facets[0][1]);
+  for (const Mesh& mesh : {torn, turned}) {
+    try {
+      mesh.check_closed("wheel");
+      ADD_FAILURE() << "taken for closed";
+    } catch (const ConfigError& error) {
+      ASSERT_EQ(error.problems().size(), 3u);  // the three edges of the one facet
+      EXPECT_NE(error.problems()[0].text().find("must be closed"), std::string::npos);
+    }
   }
 }
 

@@ -117,6 +117,43 @@ TEST(Collision, OfTwoSpinningSpheresKeepsLinearAndAngularMomentum) {
   EXPECT_LT(norm(after.second - before.second), 1e-9 * norm(before.second));
 }
 
+TEST(Collision, WithASpinningDrumKeepsAngularMomentumAboutTheAxle) {
+  const double radius = 2e-3;
+  const Surface surface{0.6, 0.4, 0.2};
+  WorldSettings settings = free_space(kTestSolid, surface, radius, 2e-7);
+  settings.rolling = "elastic_plastic";
+  World world(Communicator::alone(), settings);
+  WheelCase drum;
+  drum.diameter = 0.02;
+  drum.width = 0.02;
+  drum.facets = 24;
+  const std::size_t wheel = world.add_body("drum", wheel_mesh(drum), kTestSolid, surface, true);
+  world.body(wheel).motion.position = {0.001, 0.0, -0.0125};
+  world.body(wheel).motion.spin = 150.0;
+  Particle p = sphere(0, radius, {0.004, 0.001, 0.0});
+  p.velocity = {0.3, 0.1, -1.0};
+  p.spin = {20.0, -90.0, 40.0};
+  world.add_particle(p);
+  const auto momentum = [&] {
+    const Particle& at = world.particles()[0];
+    const Vec3 arm = at.position - world.body(wheel).motion.position;
+    return at.mass * cross(arm, at.velocity).y + 0.4 * at.mass * radius * radius * at.spin.y;
+  };
+  world.step();
+  const double before = momentum();
+  double given = 0.0;
+  double largest = 0.0;
+  for (int i = 0; i < 20000; ++i) {
+    largest = std::max(largest, world.step().max_overlap);
+    given += world.settings().time_step * world.load(wheel).moment_y.value();
+    world.body(wheel).motion.angle += world.settings().time_step * 150.0;
+  }
+  ASSERT_GT(largest, 1e-3);
+  EXPECT_GT(std::abs(given), 0.05 * std::abs(before));
+  // Both moments are of one force at one point: only rounding is left.
+  EXPECT_NEAR(momentum() + given, before, 1e-9 * std::abs(before));
+}
+
 // A floor in the plane z = 0 of n x n squares; side 1 m.
 Mesh floor_mesh(int n) {
   Mesh mesh;

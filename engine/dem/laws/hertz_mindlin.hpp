@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "engine/core/pack.hpp"
 #include "engine/core/state_io.hpp"
-#include "engine/core/vec3.hpp"
 
 namespace grouser {
 
@@ -24,22 +24,28 @@ struct Surface {
 
 /// The moving state of one contact, as every law gets it. The normal points from body b to body a;
 /// velocities are those of a relative to b.
-struct ContactPoint {
-  double overlap = 0.0;          ///< [m], > 0
-  double radius = 0.0;           ///< effective radius 1/(1/Ra + 1/Rb) [m]
-  double mass = 0.0;             ///< effective mass 1/(1/ma + 1/mb) [kg]
-  Vec3 normal;                   ///< unit vector
-  double normal_velocity = 0.0;  ///< rate of separation [m s-1], negative when approaching
-  Vec3 slip_velocity;            ///< of a's surface over b's in the contact plane [m s-1]
-  Vec3 rolling_rate;  ///< spin of a relative to b, twist about the normal removed [rad s-1]
+/// @tparam Real  double, or Pack for four contacts; laws are written for both and give the same
+/// bits
+template <class Real>
+struct ContactPointT {
+  Real overlap{};             ///< [m], > 0
+  Real radius{};              ///< effective radius 1/(1/Ra + 1/Rb) [m]
+  Real mass{};                ///< effective mass 1/(1/ma + 1/mb) [kg]
+  Vec3T<Real> normal;         ///< unit vector
+  Real normal_velocity{};     ///< rate of separation [m s-1], negative when approaching
+  Vec3T<Real> slip_velocity;  ///< of a's surface over b's in the contact plane [m s-1]
+  Vec3T<Real> rolling_rate;   ///< spin of a relative to b, twist about the normal removed [rad s-1]
 };
+using ContactPoint = ContactPointT<double>;
 
 /// What a contact does to a.
-struct ContactForce {
-  double normal = 0.0;     ///< along the normal [N], never negative: dry grains do not pull
-  Vec3 tangential;         ///< [N]
-  double stiffness = 0.0;  ///< tangential stiffness of this moment [N m-1], for rolling laws
+template <class Real>
+struct ContactForceT {
+  Real normal{};           ///< along the normal [N], never negative: dry grains do not pull
+  Vec3T<Real> tangential;  ///< [N]
+  Real stiffness{};        ///< tangential stiffness of this moment [N m-1], for rolling laws
 };
+using ContactForce = ContactForceT<double>;
 
 /// Hertz normal force, Mindlin tangential spring with Coulomb limit, viscous damping in both.
 ///
@@ -60,10 +66,12 @@ class HertzMindlin {
       "Hertz 1882; Mindlin 1949; Tsuji, Tanaka, Ishida 1992; Thornton, Cummins, Cleary 2013";
 
   /// What one contact remembers. All zero is a contact that has just begun.
-  struct History {
-    Vec3 spring;         ///< elastic part of the tangential force on a [N]
-    double patch = 0.0;  ///< sqrt(R d) of the step before [m]; 0 = no contact
+  template <class Real>
+  struct HistoryT {
+    Vec3T<Real> spring;  ///< elastic part of the tangential force on a [N]
+    Real patch{};        ///< sqrt(R d) of the step before [m]; 0 = no contact
   };
+  using History = HistoryT<double>;
   static std::vector<StateField> history_fields() {
     return {{"spring", "N", 3}, {"patch", "m", 1}};
   }
@@ -72,7 +80,9 @@ class HertzMindlin {
   static HertzMindlin from_parameters(const Solid& a, const Solid& b, const Surface& surface);
 
   /// Force on a; renews `history`. @param time_step [s]
-  inline ContactForce evaluate(const ContactPoint& at, History& history, double time_step) const;
+  template <class Real>
+  ContactForceT<Real> evaluate(const ContactPointT<Real>& at, HistoryT<Real>& history,
+                               double time_step) const;
 
   /// Damping ratio beta for which the cut law returns `restitution` (0.01 to 1). Integrates the
   /// collision of two bodies in scaled form; relative error of the restitution below 1e-4. Local.
@@ -87,35 +97,41 @@ class HertzMindlin {
   double tangential_share_ = 0.0;
 };
 
-inline ContactForce HertzMindlin::evaluate(const ContactPoint& at, History& history,
+template <class Real>
+ContactForceT<Real> HertzMindlin::evaluate(const ContactPointT<Real>& at, HistoryT<Real>& history,
                                            double time_step) const {
-  const double patch = std::sqrt(at.radius * at.overlap);
-  const double normal_stiffness = 2.0 * young_ * patch;
-  const double damping = damping_ * std::sqrt(normal_stiffness * at.mass);
-  ContactForce out;
-  out.normal = (2.0 / 3.0) * normal_stiffness * at.overlap - damping * at.normal_velocity;
-  out.normal = out.normal > 0.0 ? out.normal : 0.0;
-  out.stiffness = 8.0 * shear_ * patch;
+  using std::sqrt;
+  const Real patch = sqrt(at.radius * at.overlap);
+  const Real normal_stiffness = Real(2.0 * young_) * patch;
+  const Real damping = Real(damping_) * sqrt(normal_stiffness * at.mass);
+  ContactForceT<Real> out;
+  out.normal = Real(2.0 / 3.0) * normal_stiffness * at.overlap - damping * at.normal_velocity;
+  out.normal = select(out.normal > Real(0.0), out.normal, Real(0.0));
+  out.stiffness = Real(8.0 * shear_) * patch;
 
   // Turn the old spring into the new contact plane, keeping its length while the turn is small;
   // what is left of a spring that stood almost upright on the plane tells no direction.
-  Vec3 spring = history.spring - dot(history.spring, at.normal) * at.normal;
-  const double before2 = norm2(history.spring);
-  const double after2 = norm2(spring);
-  double scale = 4.0 * after2 > before2 ? std::sqrt(before2 / after2) : 1.0;
-  if (patch < history.patch) scale *= patch / history.patch;
+  Vec3T<Real> spring = history.spring - dot(history.spring, at.normal) * at.normal;
+  const Real before2 = norm2(history.spring);
+  const Real after2 = norm2(spring);
+  Real scale = select(Real(4.0) * after2 > before2, sqrt(before2 / after2), Real(1.0));
+  scale = select(patch < history.patch, scale * (patch / history.patch), scale);
   spring *= scale;
-  spring -= (out.stiffness * time_step) * at.slip_velocity;
+  spring -= (out.stiffness * Real(time_step)) * at.slip_velocity;
 
-  const double limit = friction_ * out.normal;
-  const double length2 = norm2(spring);
-  if (length2 > limit * limit) {
-    spring *= limit / std::sqrt(length2);
-    out.tangential = spring;
-  } else {
-    out.tangential = spring - (tangential_share_ * damping) * at.slip_velocity;
-    const double total2 = norm2(out.tangential);
-    if (total2 > limit * limit) out.tangential *= limit / std::sqrt(total2);
+  const Real limit = Real(friction_) * out.normal;
+  const Real limit2 = limit * limit;
+  const Real length2 = norm2(spring);
+  const auto slides = length2 > limit2;
+  if (any(slides)) spring *= select(slides, limit / sqrt(length2), Real(1.0));
+  out.tangential = spring - (Real(tangential_share_) * damping) * at.slip_velocity;
+  out.tangential = select(slides, spring, out.tangential);
+  const Real total2 = norm2(out.tangential);
+  const auto is_over = total2 > limit2;
+  if (any(is_over)) {
+    // A spring just cut to the limit may stand a rounding above it; it is left as it is.
+    const auto must_cut = (!slides) & is_over;
+    out.tangential *= select(must_cut, limit / sqrt(total2), Real(1.0));
   }
   history.spring = spring;
   history.patch = patch;

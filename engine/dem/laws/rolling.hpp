@@ -9,11 +9,17 @@ namespace grouser {
 struct NoRolling {
   static constexpr const char* kName = "none";
   static constexpr const char* kSource = "no rolling resistance";
-  struct History {};
+  template <class Real>
+  struct HistoryT {};
+  using History = HistoryT<double>;
   static std::vector<StateField> history_fields() { return {}; }
 
   static NoRolling from_parameters(const Surface&) { return {}; }
-  Vec3 evaluate(const ContactPoint&, const ContactForce&, History&, double) const { return {}; }
+  template <class Real>
+  Vec3T<Real> evaluate(const ContactPointT<Real>&, const ContactForceT<Real>&, HistoryT<Real>&,
+                       double) const {
+    return {};
+  }
 };
 
 /// Elastic-plastic rolling resistance: a moment grows with the rolling angle at stiffness
@@ -26,9 +32,11 @@ class ElasticPlasticRolling {
   static constexpr const char* kSource = "Ai et al. 2011, type C; Wensrich and Katterfeld 2012";
 
   /// Moment on a of the step before [N m]; zero is a contact that has just begun.
-  struct History {
-    Vec3 moment;
+  template <class Real>
+  struct HistoryT {
+    Vec3T<Real> moment;
   };
+  using History = HistoryT<double>;
   static std::vector<StateField> history_fields() { return {{"rolling_moment", "N m", 3}}; }
 
   static ElasticPlasticRolling from_parameters(const Surface& surface) {
@@ -38,14 +46,17 @@ class ElasticPlasticRolling {
   }
 
   /// Moment on a [N m]; renews `history`. @param time_step [s]
-  Vec3 evaluate(const ContactPoint& at, const ContactForce& force, History& history,
-                double time_step) const {
-    const double stiffness = force.stiffness * at.radius * at.radius;
-    Vec3 moment = history.moment - dot(history.moment, at.normal) * at.normal;
-    moment -= (stiffness * time_step) * at.rolling_rate;
-    const double limit = rolling_friction_ * at.radius * force.normal;
-    const double length2 = norm2(moment);
-    if (length2 > limit * limit) moment *= limit / std::sqrt(length2);
+  template <class Real>
+  Vec3T<Real> evaluate(const ContactPointT<Real>& at, const ContactForceT<Real>& force,
+                       HistoryT<Real>& history, double time_step) const {
+    using std::sqrt;
+    const Real stiffness = force.stiffness * at.radius * at.radius;
+    Vec3T<Real> moment = history.moment - dot(history.moment, at.normal) * at.normal;
+    moment -= (stiffness * Real(time_step)) * at.rolling_rate;
+    const Real limit = Real(rolling_friction_) * at.radius * force.normal;
+    const Real length2 = norm2(moment);
+    const auto yields = length2 > limit * limit;
+    if (any(yields)) moment *= select(yields, limit / sqrt(length2), Real(1.0));
     history.moment = moment;
     return moment;
   }
