@@ -145,7 +145,13 @@ YamlNode parse_yaml(const std::string& text, const std::string& name) {
         {Problem{name, 0, 0, "", "larger than 4 MiB", "a case or campaign is small"}});
   try {
     Importer importer(name);
-    YamlNode node = importer.import(YAML::Load(text), 0);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1) {
+      const int line = documents[1].Mark().line + 1;
+      throw ConfigError({Problem{name, line, 1, "", "a second document begins before this line",
+                                 "one file holds one document; remove '---' and what follows"}});
+    }
+    YamlNode node = importer.import(documents.empty() ? YAML::Node() : documents[0], 0);
     if (!importer.problems.empty()) throw ConfigError(importer.problems);
     return node;
   } catch (const YAML::Exception& error) {

@@ -33,12 +33,27 @@ int parse(CLI::App& app, int argc, char** argv, int& code) {
   }
 }
 
+// A mistyped verb would only be told that a verb is missing.
+bool is_verb_known(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return true;
+  std::vector<std::string> names;
+  for (const CLI::App* verb : app.get_subcommands(nullptr)) {
+    if (verb->get_name() == argv[1]) return true;
+    names.push_back(verb->get_name());
+  }
+  const std::string close = nearest(argv[1], names);
+  std::cerr << "grouser: no verb is called '" << argv[1] << "'; "
+            << (close.empty() ? "see grouser --help" : "did you mean '" + close + "'?") << "\n";
+  return false;
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Restartable DEM-LBM campaigns: runs, chunks, jobs and their results.", "grouser");
   app.set_version_flag("--version", GROUSER_VERSION);
   app.require_subcommand(1);
   int code = exit_codes::kOk;
   for (const auto& add_verb : kVerbs) add_verb(app, code);
+  if (!is_verb_known(app, argc, argv)) return exit_codes::kUsage;
   return parse(app, argc, argv, code);
 }
 
@@ -48,6 +63,18 @@ int complain(const std::exception& error, int code) {
   return code;
 }
 
+std::string text_of(const std::filesystem::filesystem_error& error) {
+  return (error.path1().empty() ? "the file system" : error.path1().string()) + ": " +
+         error.code().message();
+}
+
+// What was printed may not have arrived: a full disk, say. Its reader must not take it for whole.
+int checked(int code) {
+  if (std::cout.flush() || (code != exit_codes::kOk && code != exit_codes::kAttention)) return code;
+  return complain(StorageError("standard output cannot be written: is there room where it goes?"),
+                  exit_codes::kStorage);
+}
+
 }  // namespace
 }  // namespace grouser
 
@@ -55,7 +82,7 @@ int main(int argc, char** argv) {
   using namespace grouser;
   try {
     set_up_log(0);
-    return run(argc, argv);
+    return checked(run(argc, argv));
   } catch (const ConfigError& error) {
     return complain(error, exit_codes::kInput);
   } catch (const FormatError& error) {
@@ -63,7 +90,7 @@ int main(int argc, char** argv) {
   } catch (const StorageError& error) {
     return complain(error, exit_codes::kStorage);
   } catch (const std::filesystem::filesystem_error& error) {
-    return complain(error, exit_codes::kStorage);
+    return complain(StorageError(text_of(error)), exit_codes::kStorage);
   } catch (const CampaignBusy& error) {
     return complain(error, exit_codes::kBusy);
   } catch (const LeaseLost& error) {

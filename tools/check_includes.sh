@@ -22,6 +22,7 @@ campaign/drive   base schedulers campaign/plan campaign/store
 campaign/report  base campaign/store
 campaign/cli     base schedulers campaign/plan campaign/store campaign/drive campaign/report
 campaign         base schedulers campaign/plan campaign/store campaign/drive campaign/report campaign/cli
+bench            base engine
 tests            base schedulers engine campaign
 '
 

@@ -2,6 +2,7 @@
 #include "campaign/cli/drive_options.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "campaign/drive/lease_guard.hpp"
 
@@ -11,6 +12,14 @@ namespace {
 // A job of this machine ends without telling: that is how soon the next one starts.
 constexpr double kShortestInterval = 0.25;
 
+// CLI11's own ranges let "nan" through, which compares with nothing.
+std::string problem_of_seconds(const std::string& text, bool may_be_zero) {
+  double seconds = NAN;
+  const bool is_number = CLI::detail::lexical_cast(text, seconds) && std::isfinite(seconds);
+  if (is_number && (seconds > 0.0 || (may_be_zero && seconds == 0.0))) return "";
+  return "'" + text + "' is no number of seconds " + (may_be_zero ? "from 0 up" : "above 0");
+}
+
 }  // namespace
 
 void add_drive_options(CLI::App& verb, DriveOptions& options) {
@@ -18,9 +27,9 @@ void add_drive_options(CLI::App& verb, DriveOptions& options) {
                 "go on although a manager of another host holds the campaign");
   verb.add_option("--grace", options.grace,
                   "seconds a job may be unknown to the scheduler before it counts as gone")
-      ->check(CLI::NonNegativeNumber);
+      ->check([](const std::string& text) { return problem_of_seconds(text, true); }, "SECONDS");
   verb.add_option("--every", options.every, "seconds between two looks at the jobs")
-      ->check(CLI::PositiveNumber);
+      ->check([](const std::string& text) { return problem_of_seconds(text, false); }, "SECONDS");
 }
 
 OpenCampaign::OpenCampaign(std::filesystem::path root)

@@ -3,17 +3,15 @@
 
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "campaign/cli/exit_codes.hpp"
 #include "campaign/cli/find.hpp"
+#include "campaign/cli/json_text.hpp"
 #include "campaign/cli/text.hpp"
 #include "campaign/cli/verbs.hpp"
 
 namespace grouser {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Options {
   std::string file;
@@ -38,7 +36,11 @@ int expand(const Options& options) {
   if (!options.case_of.empty()) {
     for (const PlannedRun& run : plan.runs) {
       if (run.label != options.case_of) continue;
-      std::cout << emit_yaml(write_case(run.input));
+      if (options.as_json)
+        std::cout << json_text(
+            Json{{"schema", 1}, {"run", run.label}, {"case", case_json(run.input)}});
+      else
+        std::cout << emit_yaml(write_case(run.input));
       return exit_codes::kOk;
     }
     throw ConfigError({Problem{options.case_of, 0, 0, "", "no run is called so", ""}});
@@ -46,7 +48,7 @@ int expand(const Options& options) {
   if (options.as_json) {
     Json runs = Json::array();
     for (const PlannedRun& run : plan.runs) runs.push_back(json_of(run));
-    std::cout << Json{{"schema", 1}, {"campaign", plan.name}, {"runs", runs}}.dump(2) << "\n";
+    std::cout << json_text(Json{{"schema", 1}, {"campaign", plan.name}, {"runs", runs}});
     return exit_codes::kOk;
   }
   std::vector<std::vector<std::string>> rows;

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "campaign/cli/machine.hpp"
 #include "campaign/report/report.hpp"
 
 namespace grouser {
@@ -22,7 +23,13 @@ constexpr const char* kEngineName = "grouser-engine";
   throw ConfigError({Problem{what, 0, 0, "", problem, hint}});
 }
 
-bool is_root(const fs::path& directory) { return fs::exists(directory / Store::kFileName); }
+bool is_root(const fs::path& directory) {
+  std::error_code unreadable;
+  const bool is_there = fs::exists(directory / Store::kFileName, unreadable);
+  if (unreadable)
+    throw StorageError("cannot look into " + directory.string() + ": " + unreadable.message());
+  return is_there;
+}
 
 std::vector<fs::path> roots_here() {
   std::vector<fs::path> roots;
@@ -86,6 +93,7 @@ fs::path root_of(const std::string& name, const std::string& given) {
 
 Plan checked_plan(const std::string& file, const std::string& site) {
   return plan_campaign(file, site, [&](const CampaignFile& read, std::vector<Problem>& problems) {
+    check_machine(read, problems);
     if (read.report.kind == YamlNode::Kind::kMap)
       check_report(read.report, fs::absolute(file).parent_path(), problems);
   });

@@ -12,13 +12,14 @@ namespace grouser {
 
 /// The root of an existing campaign, absolute. `where` is the root, a campaign's name below
 /// ./runs, or a campaign's YAML; "" is this directory if it is a root, else the only campaign
-/// below ./runs. @throws ConfigError naming what there is. Local.
+/// below ./runs. @throws ConfigError naming what there is; StorageError. Local.
 std::filesystem::path find_root(const std::string& where);
 
 /// The root for a campaign of that name: `given`, or runs/NAME here. Absolute. Local.
 std::filesystem::path root_of(const std::string& name, const std::string& given);
 
-/// Reads, expands and checks a campaign file, the recordings its report names included.
+/// Reads, expands and checks a campaign file, the recordings its report names and, for scheduler
+/// `local`, this machine included.
 /// @throws ConfigError with every problem. Local.
 Plan checked_plan(const std::string& file, const std::string& site);
 

@@ -104,9 +104,7 @@ bool drive_in_foreground(OpenCampaign& campaign, const DriveOptions& options) {
       is_waiting = true;
     }
     const auto views = view_runs(campaign.store(), campaign.root());
-    std::vector<RunRow> runs;
-    for (const RunView& view : views) runs.push_back(view.run);
-    if (is_at_rest(runs)) {
+    if (is_at_rest(campaign.store().runs())) {
       block.print_message(count_states(views));
       return true;
     }

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "campaign/cli/exit_codes.hpp"
 #include "campaign/cli/find.hpp"
+#include "campaign/cli/json_text.hpp"
 #include "campaign/cli/text.hpp"
 #include "campaign/cli/verbs.hpp"
 
 namespace grouser {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Options {
   std::string file;
@@ -44,7 +42,7 @@ int plan_verb(const Options& options) {
   if (options.as_json) {
     Json runs = Json::array();
     for (const PlannedRun& run : plan.runs) runs.push_back(json_of(run));
-    std::cout << Json{{"schema", 1}, {"campaign", plan.name}, {"runs", runs}}.dump(2) << "\n";
+    std::cout << json_text(Json{{"schema", 1}, {"campaign", plan.name}, {"runs", runs}});
     return exit_codes::kOk;
   }
   std::vector<std::vector<std::string>> rows;

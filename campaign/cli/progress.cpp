@@ -13,6 +13,7 @@ namespace grouser {
 std::vector<RunView> view_runs(const Store& store, const std::filesystem::path& root) {
   std::vector<RunView> views;
   for (const RunRow& run : store.runs()) {
+    if (!run.in_plan) continue;
     RunView& view = views.emplace_back();
     view.run = run;
     view.time = run.time;
@@ -27,16 +28,26 @@ std::vector<RunView> view_runs(const Store& store, const std::filesystem::path& 
   return views;
 }
 
+std::size_t count_left_out(const Store& store) {
+  const auto runs = store.runs();
+  return static_cast<std::size_t>(
+      std::count_if(runs.begin(), runs.end(), [](const RunRow& run) { return !run.in_plan; }));
+}
+
 void count_work(const Store& store, std::vector<RunView>& views) {
   std::map<RunId, RunView*> by_id;
   for (RunView& view : views) by_id[view.run.id] = &view;
-  for (const AttemptRow& attempt : store.attempts()) ++by_id.at(attempt.run)->attempts;
+  for (const AttemptRow& attempt : store.attempts()) {
+    const auto view = by_id.find(attempt.run);
+    if (view != by_id.end()) ++view->second->attempts;
+  }
   for (const ChunkRow& chunk : store.chunks()) {
-    RunView& view = *by_id.at(chunk.run);
-    ++view.chunks;
+    const auto view = by_id.find(chunk.run);
+    if (view == by_id.end()) continue;
+    ++view->second->chunks;
     const bool is_done = chunk.state == State::kChunkDone || chunk.state == State::kCompleted ||
                          chunk.state == State::kSteady;
-    view.chunks_done += is_done ? 1 : 0;
+    view->second->chunks_done += is_done ? 1 : 0;
   }
 }
 

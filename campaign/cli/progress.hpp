@@ -22,8 +22,11 @@ struct RunView {
   std::int64_t chunks_done = 0;
 };
 
-/// All runs of the campaign; reads the progress files of the active ones. Local.
+/// All runs in the plan; reads the progress files of the active ones. Local.
 std::vector<RunView> view_runs(const Store& store, const std::filesystem::path& root);
+
+/// How many runs the YAML no longer has.
+std::size_t count_left_out(const Store& store);
 
 /// Adds the numbers of attempts and chunks.
 void count_work(const Store& store, std::vector<RunView>& views);

@@ -1,30 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "campaign/cli/exit_codes.hpp"
 #include "campaign/cli/find.hpp"
+#include "campaign/cli/json_text.hpp"
 #include "campaign/cli/text.hpp"
 #include "campaign/cli/verbs.hpp"
 
 namespace grouser {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct Options {
   std::string where;
   std::string sql;
   bool as_json = false;
 };
-
-// Numbers stay numbers; NULL is told from an empty text by being no text.
-Json json_value(const std::string& text, bool is_text) {
-  if (is_text) return text;
-  return text.empty() ? Json() : Json::parse(text, nullptr, false);
-}
 
 Table answer(const Options& options) {
   const Store store = Store::open_read_only(find_root(options.where) / Store::kFileName);
@@ -43,14 +35,7 @@ int query(const Options& options) {
     std::cout << text_table(table.columns, table.rows);
     return exit_codes::kOk;
   }
-  Json rows = Json::array();
-  for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    Json row = Json::object();
-    for (std::size_t k = 0; k < table.columns.size(); ++k)
-      row[table.columns[k]] = json_value(table.rows[i][k], table.is_text[i][k]);
-    rows.push_back(row);
-  }
-  std::cout << Json{{"schema", 1}, {"rows", rows}}.dump(2) << "\n";
+  std::cout << json_text(Json{{"schema", 1}, {"rows", rows_json(table)}});
   return exit_codes::kOk;
 }
 

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "campaign/cli/exit_codes.hpp"
 #include "campaign/cli/find.hpp"
+#include "campaign/cli/json_text.hpp"
 #include "campaign/cli/text.hpp"
 #include "campaign/cli/verbs.hpp"
 
 namespace grouser {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Options {
   std::string where;
@@ -56,6 +54,7 @@ Json json_of(const Store& store, const RunRow& run) {
               {"reason", run.reason},
               {"directory", run.directory.string()},
               {"key", run.key},
+              {"in_plan", run.in_plan},
               {"step", run.step},
               {"time_s", run.time},
               {"checkpoint", run.checkpoint},
@@ -67,6 +66,7 @@ Json json_of(const Store& store, const RunRow& run) {
 void print_run(const Store& store, const std::filesystem::path& root, const RunRow& run) {
   std::cout << run.label << "  " << word_of(run.kind) << "  " << word_of(run.state);
   if (!run.reason.empty()) std::cout << "  (" << run.reason << ")";
+  if (!run.in_plan) std::cout << "  (the YAML no longer has it)";
   std::cout << "\n  directory   " << (root / run.directory).string() << "\n  case        "
             << run.key << "\n";
   if (run.bed) std::cout << "  bed         " << store.run(*run.bed).label << "\n";
@@ -101,7 +101,7 @@ int show(const Options& options) {
   if (options.as_json) {
     Json all = Json::array();
     for (const RunRow& run : runs) all.push_back(json_of(store, run));
-    std::cout << Json{{"schema", 1}, {"runs", all}}.dump(2) << "\n";
+    std::cout << json_text(Json{{"schema", 1}, {"runs", all}});
     return exit_codes::kOk;
   }
   for (const RunRow& run : runs) print_run(store, root, run);

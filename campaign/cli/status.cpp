@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "campaign/cli/exit_codes.hpp"
 #include "campaign/cli/find.hpp"
+#include "campaign/cli/json_text.hpp"
 #include "campaign/cli/progress.hpp"
 #include "campaign/cli/text.hpp"
 #include "campaign/cli/verbs.hpp"
@@ -13,8 +13,6 @@
 
 namespace grouser {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double kWatchInterval = 2.0;
 
@@ -53,7 +51,7 @@ Json json_of(const RunView& view) {
 }
 
 void print_json(const CampaignRow& campaign, const std::filesystem::path& root,
-                const std::vector<RunView>& views) {
+                const std::vector<RunView>& views, std::size_t left_out) {
   Json counts = Json::object();
   for (const RunView& view : views) {
     Json& count = counts[word_of(view.run.state)];
@@ -61,14 +59,17 @@ void print_json(const CampaignRow& campaign, const std::filesystem::path& root,
   }
   Json runs = Json::array();
   for (const RunView& view : views) runs.push_back(json_of(view));
-  std::cout << Json{{"schema", 1},           {"campaign", campaign.name}, {"title", campaign.title},
-                    {"root", root.string()}, {"counts", counts},          {"runs", runs}}
-                   .dump(2)
-            << "\n";
+  std::cout << json_text(Json{{"schema", 1},
+                              {"campaign", campaign.name},
+                              {"title", campaign.title},
+                              {"root", root.string()},
+                              {"counts", counts},
+                              {"left_out", left_out},
+                              {"runs", runs}});
 }
 
 void print_table(const CampaignRow& campaign, const std::filesystem::path& root,
-                 const std::vector<RunView>& views) {
+                 const std::vector<RunView>& views, std::size_t left_out) {
   std::vector<std::vector<std::string>> rows;
   for (const RunView& view : views) {
     const bool has_progress = view.progress.has_value();
@@ -86,6 +87,10 @@ void print_table(const CampaignRow& campaign, const std::filesystem::path& root,
                            "PARTICLE-STEPS/S", "LEFT", "REASON"},
                           rows)
             << count_states(views) << "\n";
+  if (left_out > 0)
+    std::cout << left_out
+              << " runs that the YAML no longer has are left out (grouser query "
+                 "\"SELECT label, state FROM v_runs WHERE in_plan = 0\")\n";
 }
 
 bool needs_attention(const RunView& view) {
@@ -100,13 +105,15 @@ int status(const Options& options) {
   for (;;) {
     auto views = view_runs(store, root);
     count_work(store, views);
+    const std::size_t left_out = count_left_out(store);
     if (options.watch && !options.as_json) std::cout << "\033[H\033[2J";
     if (options.as_json)
-      print_json(campaign, root, views);
+      print_json(campaign, root, views, left_out);
     else
-      print_table(campaign, root, views);
+      print_table(campaign, root, views, left_out);
     std::cout << std::flush;
-    if (!options.watch) {
+    // Nobody would see another look.
+    if (!options.watch || !std::cout) {
       const bool waits = std::any_of(views.begin(), views.end(), needs_attention);
       return options.check && waits ? exit_codes::kAttention : exit_codes::kOk;
     }

@@ -40,20 +40,41 @@ std::string list_of(const std::vector<std::string>& labels) {
 }
 
 void print_changes(const LaunchReport& report) {
-  if (!report.added.empty())
-    std::cout << report.added.size() << " new runs: " << list_of(report.added) << "\n";
-  if (!report.gone.empty())
-    std::cout << report.gone.size()
-              << " runs that the YAML no longer has are kept: " << list_of(report.gone) << "\n";
+  const auto say = [](const std::vector<std::string>& labels, const std::string& what) {
+    if (!labels.empty())
+      std::cout << labels.size() << " runs " << what << ": " << list_of(labels) << "\n";
+  };
+  say(report.added, "are new");
+  say(report.gone, "that the YAML no longer has are cancelled; their files are kept");
+  say(report.back, "that the YAML has again go on");
+  say(report.recased, "get another frozen case with the same key (output, limits)");
+  say(report.recased_active, "of these have a job at work; it takes effect with their next one");
+  // They would be named at every later submit as well.
+  const auto& keys = report.changed_keys;
+  if (std::find(keys.begin(), keys.end(), "chunks") != keys.end())
+    say(report.kept_chunks, "have begun and keep the chunks they have");
   if (report.settings_changed) std::cout << "scheduler, resources or retries change\n";
+  for (const std::string& label : report.anew)
+    std::cout << label << ": its directory is gone; it starts anew\n";
+  for (const std::string& label : report.lost)
+    std::cout << label << ": its directory is gone, but its job is at work; "
+              << "submit again when that has ended\n";
+}
+
+// "in case, sweep": where a person finds the difference.
+std::string place_of(const LaunchReport& report) {
+  std::string text;
+  for (const std::string& key : report.changed_keys) text += (text.empty() ? "" : ", ") + key;
+  if (!text.empty()) return text;
+  return report.settings_changed ? "scheduler, resources or retries" : "files that it names";
 }
 
 // What is submitted stays as it was unless a person says that the change is meant.
 void refuse_silent_change(const LaunchReport& report, const Options& options) {
-  const bool changes = !report.added.empty() || !report.gone.empty() || report.settings_changed;
-  if (report.is_new || !changes || options.update) return;
+  if (!report.is_change() || options.update) return;
   print_changes(report);
-  throw ConfigError({Problem{options.file, 0, 0, "", "differs from the campaign that was submitted",
+  throw ConfigError({Problem{options.file, 0, 0, "",
+                             "differs from the campaign that was submitted in " + place_of(report),
                              "say --update to take the changes over, or give the campaign "
                              "another name or --root"}});
 }
@@ -92,11 +113,11 @@ void launch(const Options& options, const Plan& plan, const std::filesystem::pat
   if (!report.is_new) print_changes(report);
 }
 
-// Whether every run has its result.
+// Whether every run in the plan has its result.
 bool is_complete(const Store& store) {
   const auto runs = store.runs();
   return std::all_of(runs.begin(), runs.end(), [](const RunRow& run) {
-    return run.state == State::kCompleted || run.state == State::kSteady;
+    return !run.in_plan || run.state == State::kCompleted || run.state == State::kSteady;
   });
 }
 

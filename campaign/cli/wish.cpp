@@ -7,6 +7,7 @@
 
 #include "campaign/cli/exit_codes.hpp"
 #include "campaign/cli/find.hpp"
+#include "campaign/drive/compare.hpp"
 #include "campaign/drive/lease_guard.hpp"
 
 namespace grouser {
@@ -15,14 +16,35 @@ namespace {
 constexpr double kLeasePatience = 30.0;
 constexpr double kStep = 0.5;
 
+bool is_resumable(const RunRow& run) {
+  return run.state == State::kHeld || run.state == State::kFailed || run.state == State::kCancelled;
+}
+
+// Only a launch makes directories, from the YAML; without one there is nothing to go on from.
+void refuse_without_directory(const std::filesystem::path& root, const std::filesystem::path& yaml,
+                              const std::vector<RunRow>& runs) {
+  std::vector<Problem> problems;
+  for (const RunRow& run : runs)
+    if (run.in_plan && is_resumable(run) && is_directory_gone(root / run.directory))
+      problems.push_back(
+          {run.label, 0, 0, "", "its directory " + (root / run.directory).string() + " is gone",
+           "grouser submit " + yaml.string() + " makes it again and starts the run anew"});
+  if (!problems.empty()) throw ConfigError(problems);
+}
+
 // @return the runs to which the wish meant something
 std::set<RunId> write_wishes(OpenCampaign& campaign, const WishOptions& options, Wish wish,
                              const std::string& done_word) {
   const LeaseGuard lease(campaign.store(), campaign.clock(), kLeasePatience,
                          options.drive.take_over);
+  const auto runs = select_runs(campaign.store(), options.runs, options.all);
+  if (wish == Wish::kResume)
+    refuse_without_directory(campaign.root(), campaign.store().campaign().source, runs);
   std::set<RunId> meant;
-  for (const RunRow& run : select_runs(campaign.store(), options.runs, options.all)) {
-    if (make_wish(campaign.store(), run, wish, campaign.clock().now())) {
+  for (const RunRow& run : runs) {
+    if (wish == Wish::kResume && !run.in_plan) {
+      if (!options.all) std::cout << run.label << ": the YAML no longer has it, nothing to do\n";
+    } else if (make_wish(campaign.store(), run, wish, campaign.clock().now())) {
       meant.insert(run.id);
       std::cout << run.label << ": " << done_word << "\n";
     } else if (!options.all) {

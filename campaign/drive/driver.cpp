@@ -152,8 +152,9 @@ void Driver::advance_runs() {
     jobs += is_active(run.state) ? 1 : 0;
   }
   for (const RunRow& run : runs) {
-    const bool may_start = run.state == State::kPlanned || run.state == State::kReady ||
-                           run.state == State::kChunkDone;
+    const bool may_start =
+        run.in_plan && (run.state == State::kPlanned || run.state == State::kReady ||
+                        run.state == State::kChunkDone);
     const RunRow* bed = run.bed ? by_id.at(*run.bed) : nullptr;
     if (!may_start || jobs >= job_limit() || run.not_before > clock_.now()) continue;
     if (bed != nullptr && !has_settled(*bed)) continue;
@@ -183,6 +184,7 @@ bool is_at_rest(const std::vector<RunRow>& runs) {
   std::map<RunId, State> states;
   for (const RunRow& run : runs) states[run.id] = run.state;
   return std::all_of(runs.begin(), runs.end(), [&](const RunRow& run) {
+    if (!run.in_plan) return !is_active(run.state);
     if (is_terminal(run.state) || run.state == State::kHeld) return true;
     if (run.state != State::kPlanned || !run.bed) return false;
     const State bed = states.at(*run.bed);

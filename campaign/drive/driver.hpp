@@ -56,7 +56,7 @@ class Driver {
 };
 
 /// Whether nothing more will happen without a person: every run has ended, is held, or waits for
-/// one that is. Pure.
+/// one that is; of a run that the YAML no longer has, no job is left. Pure.
 bool is_at_rest(const std::vector<RunRow>& runs);
 
 /// Shared settings of the campaign in `store`, the engine's hash left out.

@@ -25,8 +25,6 @@ std::optional<Record> of_token(std::optional<Record> record, const std::string& 
   return record && record->token == token ? record : std::nullopt;
 }
 
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
-
 }  // namespace
 
 std::optional<CheckpointManifest> newest_checkpoint(const std::filesystem::path& run_directory) {
@@ -56,8 +54,6 @@ Evidence read_evidence(const std::filesystem::path& run_directory, const std::st
       read_record<Outcome>(run_directory / run_files::outcome(token), outcome_from_json), token);
   evidence.started = record(attempt_files::started(token));
   evidence.newest = newest_checkpoint(run_directory);
-  if (const auto stop = read_file(run_directory / run_files::kStop))
-    evidence.stop_text = stop->empty() ? "user" : first_line(*stop);
   const auto progress = of_token(read_progress(run_directory), token);
   if (progress) evidence.progress_step = progress->step;
   return evidence;

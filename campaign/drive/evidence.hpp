@@ -22,7 +22,6 @@ struct Evidence {
   std::optional<JobStatus> job;      ///< as the scheduler knows it
   bool scheduler_answered = false;   ///< so that `job` missing means that it does not know it
   std::string why_not_answered;
-  std::string stop_text;                     ///< first line of the stop file, "" when there is none
   std::optional<CheckpointManifest> newest;  ///< complete checkpoint with the largest step
   std::int64_t progress_step = 0;            ///< of progress.json if it is this attempt's
 };

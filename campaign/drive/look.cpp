@@ -83,12 +83,12 @@ Ending ending_by_job(const JobStatus& job, const std::optional<JobRecord>& exit)
 
 Ending ending_by_outcome(const Outcome& outcome, const Evidence& evidence) {
   Ending ending{class_of(outcome.code), static_cast<int>(outcome.code), outcome.reason};
-  if (outcome.code != EngineCode::kStopped) return ending;
-  const bool was_cancelled = evidence.job && evidence.job->end == JobEnd::kCancelled;
-  // The script turned a signal of the batch system into the stop file: walltime or preemption.
-  if (evidence.stop_text == "signal" && !was_cancelled)
-    ending.outcome_class = OutcomeClass::kContinue;
-  if (was_cancelled) ending.reason = "the job was cancelled (" + evidence.job->detail + ")";
+  // A signal is the batch system's (walltime, preemption) unless that says that a person sent it.
+  const bool was_cancelled = outcome.code == EngineCode::kPaused && outcome.by_signal &&
+                             evidence.job && evidence.job->end == JobEnd::kCancelled;
+  if (!was_cancelled) return ending;
+  ending.outcome_class = OutcomeClass::kUser;
+  ending.reason = "the job was cancelled (" + evidence.job->detail + ")";
   return ending;
 }
 
@@ -105,10 +105,8 @@ Sighting look_at_outcome(AttemptRow attempt, const Evidence& evidence, const Pol
   attempt.state = State::kRunning;
   attempt.reason.clear();
   if (attempt.outcome_at == 0.0) attempt.outcome_at = now;
-  const bool is_signal_stop =
-      evidence.outcome->code == EngineCode::kStopped && evidence.stop_text == "signal";
   // Whether a signal came from the batch system or from a person, only the scheduler knows.
-  const bool script_ended = evidence.exit.has_value() && !is_signal_stop;
+  const bool script_ended = evidence.exit.has_value() && !evidence.outcome->by_signal;
   const bool lingers = now - attempt.outcome_at >= policy.linger;
   const bool is_over = script_ended || job_has_ended(evidence) || is_absent(evidence);
   sighting.attempt = attempt;

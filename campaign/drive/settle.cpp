@@ -111,13 +111,19 @@ double delay_of(const RunRow& run, const Policy& policy) {
   return std::min(policy.retry_delay * std::exp2(std::min(doublings, 16.0)), kLongestDelay);
 }
 
+// Asked to end and ended with a checkpoint: by a stop file, or by a signal that a person sent.
+bool ended_in_order(const Ending& ending) {
+  return ending.code == static_cast<int>(EngineCode::kStopped) ||
+         (ending.code == static_cast<int>(EngineCode::kPaused) &&
+          ending.outcome_class == OutcomeClass::kUser);
+}
+
 State attempt_state(const Ending& ending, Next next) {
   if (next == Next::kFinish)
     return ending.code == static_cast<int>(EngineCode::kSteady) ? State::kSteady
                                                                 : State::kCompleted;
   if (next == Next::kCancel || !ending.was_submitted) return State::kCancelled;
-  const bool is_stop = ending.code == static_cast<int>(EngineCode::kStopped);
-  return next == Next::kAdvance || is_stop ? State::kChunkDone : State::kFailed;
+  return next == Next::kAdvance || ended_in_order(ending) ? State::kChunkDone : State::kFailed;
 }
 
 void advance(Change& change, const RunRow& run) {

@@ -85,7 +85,8 @@ JobSpec job_spec(const JobSettings& shared, const RunRow& run, const ChunkRow& c
   spec.label = run.label;
   spec.token = token;
   spec.run_directory = shared.root / run.directory;
-  spec.engine = {shared.engine, "--run-dir", spec.run_directory.string(), "--token", token};
+  spec.engine = {shared.engine, "--run-dir", spec.run_directory.string(), "--token", token,
+                 "--restart",   "auto"};
   const auto add = [&](const char* option, const std::string& value) {
     spec.engine.insert(spec.engine.end(), {option, value});
   };
@@ -94,7 +95,7 @@ JobSpec job_spec(const JobSettings& shared, const RunRow& run, const ChunkRow& c
   if (resources.walltime > 0.0) {
     // A batch system kills at the walltime; at home nobody does, and it is the engine's own.
     const double margin = is_batch ? stop_margin(resources.walltime) : 0.0;
-    add("--walltime", format_number(resources.walltime - margin));
+    add("--max-seconds", format_number(resources.walltime - margin));
   }
   spec.ranks = resources.ranks;
   spec.nodes = resources.nodes;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "campaign/plan/campaign_file.hpp"
 
-#include <limits>
+#include <charconv>
 
 #include "base/case.hpp"
+#include "base/units.hpp"
 #include "campaign/plan/names.hpp"
 #include "schedulers/table.hpp"
 
@@ -12,6 +13,7 @@ namespace {
 
 constexpr std::int64_t kVersion = 1;
 constexpr std::int64_t kMaxChunks = 10000;
+constexpr double kShortestBatchWalltime = 60.0;
 
 void describe_batch_words(FieldVisitor& v, Resources& r) {
   const char* const plain = "allowed are letters, digits and . _ + @ : / = -";
@@ -33,7 +35,7 @@ void describe_batch_words(FieldVisitor& v, Resources& r) {
   v.check("setup_file", is_one_line(r.setup_file), "has control characters", "give one path");
 }
 
-void describe_resources(FieldVisitor& v, Resources& r) {
+void describe_resources(FieldVisitor& v, Resources& r, const std::string& scheduler) {
   v.integer({"ranks", "MPI ranks of one run", kOptional}, r.ranks, 1, 10'000'000);
   v.integer({"nodes", "nodes of one run; 0 = the scheduler decides", kOptional}, r.nodes, 0,
             1'000'000);
@@ -42,6 +44,11 @@ void describe_resources(FieldVisitor& v, Resources& r) {
              r.walltime, "s", Range::closed(0.0, 366.0 * 86400.0));
   v.check("walltime", r.walltime == 0.0 || r.walltime >= 1.0, "is shorter than a second",
           "a job needs time to start and to write a checkpoint");
+  const bool is_too_short =
+      scheduler != "local" && r.walltime >= 1.0 && r.walltime < kShortestBatchWalltime;
+  v.check("walltime", !is_too_short, "is under 60 s, which is too short for " + scheduler,
+          "batch systems count in minutes, and the engine stops " +
+              format_number(stop_margin(kShortestBatchWalltime)) + " s or more before the end");
   describe_batch_words(v, r);
   v.integer({"concurrent", "jobs at once; 0 = cores / ranks for local, else no limit", kOptional},
             r.concurrent, 0, 1'000'000);
@@ -50,7 +57,7 @@ void describe_resources(FieldVisitor& v, Resources& r) {
 void describe_settings(FieldVisitor& v, Settings& s) {
   v.word({"scheduler", "who runs the jobs", kOptional}, s.scheduler, scheduler_names());
   v.group({"resources", "what one job asks of the machine", kOptional},
-          [&](FieldVisitor& inner) { describe_resources(inner, s.resources); });
+          [&](FieldVisitor& inner) { describe_resources(inner, s.resources, s.scheduler); });
   v.group({"retries", "how often a failure is tried again", kOptional}, [&](FieldVisitor& inner) {
     inner.integer({"infrastructure",
                    "attempts in a row that may fail without progress for reasons of node, network "
@@ -98,9 +105,26 @@ void describe_axis(FieldVisitor& v, Axis& axis) {
   v.check("points", !axis.points.empty(), "has no point", "give one point or leave the axis out");
 }
 
+// A file of another version may differ in every key: its version alone is worth a word. What is no
+// number at all is left to the reader of the keys.
+bool is_other_version(const YamlNode& root, const char* key, std::vector<Problem>& problems) {
+  const YamlNode* at = root.find(key);
+  if (at == nullptr) return false;
+  std::int64_t version = kVersion;
+  const char* const end = at->scalar.data() + at->scalar.size();
+  const auto read = std::from_chars(at->scalar.data(), end, version);
+  if (read.ec != std::errc() || read.ptr != end || version == kVersion) return false;
+  problems.push_back(
+      {at->file, at->line, at->column, key,
+       "the file is of version " + std::to_string(version) + ", and this grouser knows version " +
+           std::to_string(kVersion),
+       version > kVersion ? "use a newer grouser" : "write " + std::string(key) + ": 1"});
+  return true;
+}
+
 // Puts the site's own values, with their own positions, over those of the campaign.
 void apply_site(YamlNode& root, const YamlNode& site, std::vector<Problem>& problems) {
-  Settings settings;
+  if (is_other_version(site, "grouser_site", problems)) return;
   std::int64_t version = kVersion;
   read_fields(
       site,
@@ -164,6 +188,7 @@ CampaignFile read_campaign(const std::filesystem::path& path, const std::filesys
                            std::vector<Problem>& problems) {
   CampaignFile file;
   file.root = load_yaml(path);
+  if (is_other_version(file.root, "grouser", problems)) return file;
   if (!site.empty() && file.root.kind == YamlNode::Kind::kMap)
     apply_site(file.root, load_yaml(site), problems);
   read_fields(

@@ -7,6 +7,9 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "base/atomic_file.hpp"
+#include "base/hash.hpp"
+
 namespace grouser {
 namespace {
 
@@ -98,19 +101,24 @@ YamlNode overlaid_case(const CampaignFile& file, const std::vector<std::size_t>&
   return node;
 }
 
-// Counts the path of a surface file from the YAML file it is written in.
-void resolve_stl(const YamlNode& node, Case& input, ProblemSet& problems) {
-  if (!input.has_wheel || input.wheel.stl_file.empty()) return;
-  const YamlNode* wheel = node.find("wheel");
-  const YamlNode* at = wheel == nullptr ? nullptr : wheel->find("stl_file");
-  if (at == nullptr) return;
-  const auto full = std::filesystem::absolute(std::filesystem::path(at->file).parent_path() /
-                                              input.wheel.stl_file)
-                        .lexically_normal();
-  input.wheel.stl_file = full.string();
-  if (!std::filesystem::is_regular_file(full))
-    problems.add(*at, "case.wheel.stl_file", "'" + full.string() + "' is not a file",
-                 "paths count from the YAML file");
+// Hash of a file's content, or what is wrong with the file.
+struct SurfaceFile {
+  std::string hash;
+  std::string problem;
+  std::string hint;
+};
+
+SurfaceFile read_surface(const std::filesystem::path& file) {
+  std::error_code unreadable;
+  if (!std::filesystem::is_regular_file(file, unreadable))
+    return {"", "is not a file", "paths count from the YAML file"};
+  try {
+    const auto text = read_file(file);
+    if (!text || text->empty()) return {"", "is empty", "export the surface again"};
+    return {hash_text(*text), "", ""};
+  } catch (const StorageError&) {
+    return {"", "cannot be read", "check its permissions"};
+  }
 }
 
 std::string directory_name(const std::string& label, const std::string& key) {
@@ -151,14 +159,34 @@ class Planner {
     run.input = read_case(node, found);
     for (const Problem& one : found) problems_.add(prefixed(one));
     if (!found.empty()) return;
-    resolve_stl(node, run.input, problems_);
-    finish(run, choice);
+    if (resolve_stl(node, run)) finish(run, choice);
   }
 
   // Keys of a case are named from the document's root.
   static Problem prefixed(Problem problem) {
     problem.key = problem.key.empty() ? "case" : "case." + problem.key;
     return problem;
+  }
+
+  // The file's path counts from the YAML file it is written in. The case gets the copy's name,
+  // which is the hash of the content: what is computed follows the content and not the path.
+  // @return whether there is nothing wrong with it
+  bool resolve_stl(const YamlNode& node, PlannedRun& run) {
+    std::string& named = run.input.wheel.stl_file;
+    if (!run.input.has_wheel || named.empty()) return true;
+    const YamlNode& at = node_or(node_or(node, "wheel"), "stl_file");
+    run.surface = std::filesystem::absolute(std::filesystem::path(at.file).parent_path() / named)
+                      .lexically_normal();
+    auto [known, is_new] = surfaces_.try_emplace(run.surface);
+    if (is_new) known->second = read_surface(run.surface);
+    const SurfaceFile& surface = known->second;
+    if (!surface.problem.empty()) {
+      problems_.add(at, "case.wheel.stl_file", "'" + run.surface.string() + "' " + surface.problem,
+                    surface.hint);
+      return false;
+    }
+    named = "../../surfaces/" + surface.hash + ".stl";
+    return true;
   }
 
   void finish(PlannedRun& run, const std::vector<std::size_t>& choice) {
@@ -211,6 +239,7 @@ class Planner {
   std::map<std::string, std::string> labels_by_key_;
   std::set<std::string> labels_;
   std::set<std::string> bed_keys_;
+  std::map<std::filesystem::path, SurfaceFile> surfaces_;
   std::vector<PlannedRun> beds_;
   std::vector<PlannedRun> runs_;
 };

@@ -23,6 +23,8 @@ struct PlannedRun {
   std::string bed_key;              ///< key of the bed it starts from; "" for a bed
   std::vector<std::pair<std::string, std::string>> axes;  ///< (axis, point), in sweep order
   Case input;
+  std::filesystem::path surface;  ///< absolute path of the wheel's STL file, or ""; the case names
+                                  ///< the copy ../../surfaces/HASH.stl that a launch makes
   std::vector<std::optional<double>> chunk_ends;  ///< simulated time of each chunk's end [s];
                                                   ///< nothing = the end of the run
 };
@@ -39,7 +41,7 @@ struct Plan {
 /// under them. Every case is read and checked; problems of the cases are appended, one that several
 /// runs share once. The plan holds nothing of use when there are problems.
 /// @param file  as read by read_campaign without problems
-/// Reads STL files' presence, else pure. Local.
+/// Reads STL files, else pure. Local.
 Plan make_plan(const CampaignFile& file, std::vector<Problem>& problems);
 
 /// Ends of the chunks of a run. @param duration  of the run [s]; 0 = unknown, then at most `limit`

@@ -65,6 +65,8 @@ class Collector {
   Collector(std::filesystem::path root, double now)
       : root_(std::move(root)), store_(Store::open_read_only(root_ / Store::kFileName)) {
     data_.made_at = date_of(now);
+    for (const RunRow& run : store_.runs())
+      if (run.in_plan) runs_.push_back(run);
   }
 
   ReportData collect() {
@@ -72,7 +74,7 @@ class Collector {
     data_.name = campaign.name;
     data_.title = campaign.title;
     read_settings_of(campaign);
-    for (const RunRow& row : store_.runs()) data_.runs.push_back(run_data(row));
+    for (const RunRow& row : runs_) data_.runs.push_back(run_data(row));
     add_attempts();
     add_provenance(campaign);
     return std::move(data_);
@@ -95,11 +97,13 @@ class Collector {
   void read_settings_of(const CampaignRow& campaign) {
     try_to([&] {
       std::vector<Problem> problems;
-      const YamlNode file = load_yaml(campaign.source);
-      const YamlNode* report = file.find("report");
-      data_.settings = read_report_settings(report == nullptr ? YamlNode{} : *report, problems);
-      for (const std::string& path : data_.settings.recordings)
-        data_.recordings.push_back(read_recording(campaign.source.parent_path() / path, problems));
+      // What was submitted, whatever has become of the user's file since.
+      const YamlNode file = load_yaml(root_ / kFrozenCampaign);
+      const YamlNode* found = file.find("report");
+      const YamlNode report = found == nullptr ? YamlNode{} : *found;
+      data_.settings = read_report_settings(report, problems);
+      data_.recordings =
+          read_recordings(report, data_.settings, campaign.source.parent_path(), problems);
       for (const Problem& problem : problems) data_.warnings.push_back(problem.text());
     });
   }
@@ -148,13 +152,15 @@ class Collector {
     std::map<std::int64_t, std::size_t> run_at;
     std::map<std::int64_t, std::int64_t> position_of;
     std::vector<std::map<std::string, std::string>> hosts;
-    for (const RunRow& row : store_.runs()) {
+    for (const RunRow& row : runs_) {
       run_at[row.id.value] = hosts.size();
       hosts.push_back(hosts_of(root_ / row.directory));
     }
     for (const ChunkRow& chunk : store_.chunks()) position_of[chunk.id.value] = chunk.position;
     for (const AttemptRow& row : store_.attempts()) {
-      const std::size_t run = run_at.at(row.run.value);
+      const auto found = run_at.find(row.run.value);
+      if (found == run_at.end()) continue;
+      const std::size_t run = found->second;
       std::vector<AttemptData>& attempts = data_.runs[run].attempts;
       AttemptData attempt = attempt_data(row, position_of[row.chunk.value]);
       attempt.host = hosts[run][row.token];
@@ -197,6 +203,7 @@ class Collector {
 
   std::filesystem::path root_;
   Store store_;
+  std::vector<RunRow> runs_;  // in the plan
   ReportData data_;
   std::set<std::string> engines_;
 };

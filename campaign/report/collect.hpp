@@ -7,8 +7,9 @@
 
 namespace grouser {
 
-/// Gathers what a report needs from the database, the run directories, the campaign file and its
-/// recordings. Files that are missing or damaged become warnings. Local.
+/// Gathers what a report needs from the database, the run directories, the frozen campaign file and
+/// its recordings, for the runs in the plan. Files that are missing or damaged become warnings.
+/// Local.
 /// @param now seconds since 1970, the report's date
 /// @throws StorageError, FormatError when the database cannot be read
 ReportData collect_report(const std::filesystem::path& campaign_root, double now);

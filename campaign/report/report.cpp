@@ -41,7 +41,7 @@ std::string summary_table(const ReportRequest& request) {
 void check_report(const YamlNode& report, const std::filesystem::path& directory,
                   std::vector<Problem>& problems) {
   const ReportSettings settings = read_report_settings(report, problems);
-  for (const std::string& path : settings.recordings) read_recording(directory / path, problems);
+  read_recordings(report, settings, directory, problems);
 }
 
 }  // namespace grouser

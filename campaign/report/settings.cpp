@@ -2,6 +2,17 @@
 #include "campaign/report/settings.hpp"
 
 namespace grouser {
+namespace {
+
+// Where the i-th recording is named, or the nearest place above it.
+const YamlNode& path_node(const YamlNode& report, std::size_t i) {
+  const YamlNode* list = report.find("recordings");
+  if (list == nullptr || i >= list->items.size()) return report;
+  const YamlNode* path = list->items[i].find("path");
+  return path == nullptr ? list->items[i] : *path;
+}
+
+}  // namespace
 
 SlipDefinition ReportSettings::slip_definition() const {
   return find_slip_definition(horizontal).value_or(SlipDefinition::kPowered);
@@ -33,6 +44,27 @@ ReportSettings read_report_settings(const YamlNode& node, std::vector<Problem>& 
   read_fields(
       node, [&](FieldVisitor& visitor) { describe(visitor, settings); }, problems);
   return settings;
+}
+
+std::vector<Recording> read_recordings(const YamlNode& node, const ReportSettings& settings,
+                                       const std::filesystem::path& directory,
+                                       std::vector<Problem>& problems) {
+  std::vector<Recording> recordings;
+  for (std::size_t i = 0; i < settings.recordings.size(); ++i) {
+    if (settings.recordings[i].empty()) continue;  // a mistake that is named already
+    const std::filesystem::path folder = directory / settings.recordings[i];
+    std::error_code unreadable;
+    if (std::filesystem::is_regular_file(folder / "recording.yaml", unreadable)) {
+      recordings.push_back(read_recording(folder, problems));
+      continue;
+    }
+    const YamlNode& at = path_node(node, i);
+    problems.push_back(
+        {at.file, at.line, at.column, "report.recordings[" + std::to_string(i) + "].path",
+         (folder / "recording.yaml").lexically_normal().string() + ": cannot be read",
+         "paths count from " + directory.string()});
+  }
+  return recordings;
 }
 
 }  // namespace grouser

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "base/schema.hpp"
 #include "campaign/report/observables.hpp"
+#include "campaign/report/recording.hpp"
 
 namespace grouser {
 
@@ -24,5 +26,12 @@ void describe(FieldVisitor& visitor, ReportSettings& settings);
 
 /// Reads and checks `report:`; a null node gives the defaults. Problems are appended. Local.
 ReportSettings read_report_settings(const YamlNode& node, std::vector<Problem>& problems);
+
+/// Reads the recordings that `report:` names. One that is not there is a problem at the place of
+/// its name in `node`. @param directory from which relative paths count. Problems are appended.
+/// Local.
+std::vector<Recording> read_recordings(const YamlNode& node, const ReportSettings& settings,
+                                       const std::filesystem::path& directory,
+                                       std::vector<Problem>& problems);
 
 }  // namespace grouser

@@ -23,7 +23,8 @@ void columns_of_campaign(Visitor& v, Row& r) {
 template <class Visitor, class Row>
 void columns_of_run(Visitor& v, Row& r) {
   v("label", r.label), v("kind", r.kind), v("directory", r.directory), v("key", r.key);
-  v("bed_id", r.bed), v("state", r.state), v("reason", r.reason), v("request", r.request);
+  v("in_plan", r.in_plan), v("bed_id", r.bed), v("state", r.state), v("reason", r.reason),
+      v("request", r.request);
   v("requested_at", r.requested_at), v("failures", r.failures), v("not_before", r.not_before);
   v("step", r.step), v("time", r.time), v("end_time", r.end_time);
   v("checkpoint", r.checkpoint), v("state_hash", r.state_hash), v("particles", r.particles);

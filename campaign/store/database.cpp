@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 
+#include "campaign/store/storage_advice.hpp"
+
 namespace grouser {
 namespace {
 
@@ -43,8 +45,10 @@ JournalMode journal_mode_for(unsigned long file_system) {
 
 std::unique_ptr<SQLite::Database> open_database(const std::filesystem::path& file, bool to_write) {
   try {
-    if (!to_write && !std::filesystem::exists(file))
-      throw StorageError(file.string() + ": there is no such database");
+    std::error_code unreadable;
+    if (!to_write && !std::filesystem::exists(file, unreadable))
+      throw StorageError(file.string() + ": " +
+                         (unreadable ? unreadable.message() : "there is no such database"));
     const int flags =
         to_write ? SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE : SQLite::OPEN_READONLY;
     auto database = std::make_unique<SQLite::Database>(file.string(), flags, kBusyMilliseconds);
@@ -63,8 +67,13 @@ std::unique_ptr<SQLite::Database> open_database(const std::filesystem::path& fil
     }
     return database;
   } catch (const SQLite::Exception& error) {
-    throw StorageError(file.string() + ": " + error.what());
+    throw storage_error(file.string(), error.getErrorCode(), error.what());
   }
+}
+
+StorageError storage_error(const std::string& file, int code, const std::string& message) {
+  const std::string advice = storage_advice(code);
+  return StorageError(file + ": " + message + (advice.empty() ? "" : "; " + advice));
 }
 
 WriteTransaction::WriteTransaction(SQLite::Database& database) : database_(database) {

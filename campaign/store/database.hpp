@@ -35,13 +35,16 @@ class WriteTransaction {
   bool is_open_ = true;
 };
 
+/// SQLite's complaint as ours: file, what happened, what to do.
+StorageError storage_error(const std::string& file, int code, const std::string& message);
+
 /// Runs `work` and turns SQLite's exceptions into ours, naming the file.
 template <class Work>
 auto guarded(const SQLite::Database& database, const Work& work) {
   try {
     return work();
   } catch (const SQLite::Exception& error) {
-    throw StorageError(database.getFilename() + ": " + error.what());
+    throw storage_error(database.getFilename(), error.getErrorCode(), error.what());
   }
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "campaign/store/database.hpp"
+#include "campaign/store/storage_advice.hpp"
 
 namespace grouser {
 namespace {
@@ -39,14 +40,22 @@ class ReadingOnly {
   sqlite3* handle_;
 };
 
-Prepared prepare(sqlite3* handle, const std::string& sql) {
+// A damaged or unreachable file is no mistake of the statement.
+[[noreturn]] void refuse(const SQLite::Database& database, int code) {
+  const char* const message = sqlite3_errmsg(database.getHandle());
+  if (!storage_advice(code).empty()) throw storage_error(database.getFilename(), code, message);
+  throw std::invalid_argument(message);
+}
+
+Prepared prepare(const SQLite::Database& database, const std::string& sql) {
+  sqlite3* const handle = database.getHandle();
   sqlite3_stmt* statement = nullptr;
   const char* rest = nullptr;
   const int code = sqlite3_prepare_v2(handle, sql.c_str(), -1, &statement, &rest);
   Prepared prepared(statement);
   if (code == SQLITE_AUTH)
     throw std::invalid_argument("only reading is allowed: one SELECT over the views");
-  if (code != SQLITE_OK) throw std::invalid_argument(sqlite3_errmsg(handle));
+  if (code != SQLITE_OK) refuse(database, code);
   if (!prepared) throw std::invalid_argument("there is no statement in it");
   if (std::string(rest).find_first_not_of(" \t\r\n;") != std::string::npos)
     throw std::invalid_argument("only one statement at a time");
@@ -61,9 +70,9 @@ std::string text_at(sqlite3_stmt* statement, int column) {
 }  // namespace
 
 Table Store::query(const std::string& sql) const {
-  sqlite3* const handle = impl_->database->getHandle();
-  const ReadingOnly guard(handle);
-  const Prepared statement = prepare(handle, sql);
+  const SQLite::Database& database = *impl_->database;
+  const ReadingOnly guard(database.getHandle());
+  const Prepared statement = prepare(database, sql);
   const int count = sqlite3_column_count(statement.get());
   Table table;
   for (int i = 0; i < count; ++i)
@@ -71,7 +80,7 @@ Table Store::query(const std::string& sql) const {
   for (;;) {
     const int code = sqlite3_step(statement.get());
     if (code == SQLITE_DONE) return table;
-    if (code != SQLITE_ROW) throw std::invalid_argument(sqlite3_errmsg(handle));
+    if (code != SQLITE_ROW) refuse(database, code);
     auto& row = table.rows.emplace_back();
     auto& is_text = table.is_text.emplace_back();
     for (int i = 0; i < count; ++i) {

@@ -40,6 +40,7 @@ struct CampaignRow {
 struct AxisLabel {
   std::string axis;
   std::string label;
+  bool operator==(const AxisLabel&) const = default;
 };
 
 enum class RunKind { kBed, kWheel };
@@ -51,6 +52,7 @@ struct RunRow {
   RunKind kind = RunKind::kWheel;
   std::filesystem::path directory;  ///< relative to the campaign root
   std::string key;                  ///< content_key of the case
+  bool in_plan = true;              ///< the YAML has it; of others only the files are kept
   std::vector<AxisLabel> axes;      ///< in the order of the sweep; empty for a shared bed
   std::optional<RunId> bed;         ///< the run whose settled bed this one starts from
   State state = State::kPlanned;

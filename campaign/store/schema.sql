@@ -27,6 +27,7 @@ CREATE TABLE run (
   kind         TEXT NOT NULL CHECK (kind IN ('bed', 'wheel')),
   directory    TEXT NOT NULL UNIQUE,
   key          TEXT NOT NULL,
+  in_plan      INTEGER NOT NULL CHECK (in_plan IN (0, 1)),
   bed_id       INTEGER REFERENCES run (id),
   state        TEXT NOT NULL,
   reason       TEXT NOT NULL,
@@ -111,7 +112,8 @@ CREATE VIEW v_runs AS
          nullif(r.end_time, 0.0) AS end_time_s,
          (SELECT count(*) FROM chunk c WHERE c.run_id = r.id) AS chunks,
          (SELECT count(*) FROM attempt a WHERE a.run_id = r.id) AS attempts,
-         r.failures, r.checkpoint, r.state_hash, nullif(r.particles, 0) AS particles
+         r.failures, r.checkpoint, r.state_hash, nullif(r.particles, 0) AS particles,
+         r.in_plan
   FROM run r LEFT JOIN run b ON b.id = r.bed_id
   ORDER BY r.id;
 

@@ -22,40 +22,6 @@ void add_axes(SQLite::Database& database, std::vector<RunRow>& runs) {
   }
 }
 
-RunId bed_of_key(SQLite::Database& database, const std::string& key) {
-  SQLite::Statement statement(database, "SELECT id FROM run WHERE kind = 'bed' AND key = ?");
-  statement.bind(1, key);
-  GROUSER_CHECK(statement.executeStep());
-  return {statement.getColumn(0).getInt64()};
-}
-
-void insert_axes(SQLite::Database& database, std::int64_t run, const std::vector<AxisLabel>& axes) {
-  SQLite::Statement statement(
-      database, "INSERT INTO run_axis (run_id, position, axis, label) VALUES (?, ?, ?, ?)");
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    statement.bind(1, run);
-    statement.bind(2, static_cast<std::int64_t>(i));
-    statement.bind(3, axes[i].axis);
-    statement.bind(4, axes[i].label);
-    statement.exec();
-    statement.reset();
-  }
-}
-
-void insert_run(SQLite::Database& database, const NewRun& added) {
-  RunRow row = added.row;
-  if (!added.bed_key.empty()) row.bed = bed_of_key(database, added.bed_key);
-  const std::int64_t id = insert_row(database, row);
-  insert_axes(database, id, row.axes);
-  ChunkRow chunk;
-  chunk.run.value = id;
-  for (const auto& end : added.chunk_ends) {
-    chunk.until_time = end;
-    insert_row(database, chunk);
-    ++chunk.position;
-  }
-}
-
 void insert_after(SQLite::Database& database, const ChunkRow& chunk) {
   // Positions are unique at every moment, so the later chunks move up by way of negative ones.
   SQLite::Statement away(database,
@@ -159,32 +125,6 @@ std::vector<AttemptRow> Store::active_attempts() const {
   return guarded(database, [&] {
     return select_rows<AttemptRow>(
         database, "WHERE state IN ('SUBMITTING', 'QUEUED', 'RUNNING', 'UNKNOWN') ORDER BY run_id");
-  });
-}
-
-void Store::put_campaign(const CampaignRow& campaign) {
-  SQLite::Database& database = *impl_->database;
-  guarded(database, [&] {
-    WriteTransaction transaction(database);
-    impl_->confirm_lease();
-    SQLite::Statement statement(
-        database,
-        "INSERT OR REPLACE INTO campaign (name, title, source, settings, engine, created_at, id) "
-        "VALUES (?, ?, ?, ?, ?, ?, 1)");
-    ColumnBinder binder(statement);
-    columns_of_campaign(binder, campaign);
-    statement.exec();
-    transaction.commit();
-  });
-}
-
-void Store::add_runs(const std::vector<NewRun>& runs) {
-  SQLite::Database& database = *impl_->database;
-  guarded(database, [&] {
-    WriteTransaction transaction(database);
-    impl_->confirm_lease();
-    for (const NewRun& run : runs) insert_run(database, run);
-    transaction.commit();
   });
 }
 

@@ -31,6 +31,22 @@ struct NewRun {
   std::vector<std::optional<double>> chunk_ends;
 };
 
+/// Chunks of a run that has not begun or begins anew. Chunks that attempts refer to stay, so that
+/// the history stays whole, and are planned again; the others become those of `ends`.
+struct Recut {
+  RunId run;
+  std::vector<std::optional<double>> ends;
+};
+
+/// What a new plan makes of a campaign, to be written together or not at all.
+struct PlanChange {
+  CampaignRow campaign;
+  std::vector<RunRow> runs;   ///< that are there and change, axes included; a label may pass from
+                              ///< one to another or to an added run
+  std::vector<NewRun> added;  ///< beds first
+  std::vector<Recut> recut;
+};
+
 /// Rows to be written together or not at all.
 struct Change {
   std::optional<RunRow> run;
@@ -46,6 +62,9 @@ struct Table {
   std::vector<std::vector<std::string>> rows;
   std::vector<std::vector<bool>> is_text;  ///< false for numbers and NULL; same shape as rows
 };
+
+/// Name of the frozen copy of the campaign's YAML in its root, beside the database.
+inline constexpr const char* kFrozenCampaign = "campaign.yaml";
 
 /// The campaign's database `grouser.db`. It is a record of what the manager decided and observed;
 /// compute jobs never open it. All SQL of the program stands behind this class.
@@ -90,8 +109,7 @@ class Store {
   void release_lease(const LeaseHolder& me);
 
   /// The functions below need the lease. @throws LeaseLost when it is no longer ours.
-  void put_campaign(const CampaignRow& campaign);
-  void add_runs(const std::vector<NewRun>& runs);
+  void replace_plan(const PlanChange& change);
   /// First transaction of a submission: writes the new attempt, its chunk and its run.
   /// @return the attempt's number. @throws StorageError when the run already has an active attempt.
   AttemptRow add_attempt(const AttemptRow& attempt, const RunRow& run, const ChunkRow& chunk);

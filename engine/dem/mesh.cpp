@@ -80,7 +80,8 @@ void Mesh::check_closed(const std::string& name) const {
       text.append(" ").append(format_number(v.y)).append(" ").append(format_number(v.z));
       return text;
     };
-    problems.push_back({name, 0, 0, "edge from " + text_of(edge.first) + " to " + text_of(edge.second),
+    problems.push_back({name, 0, 0,
+                        "edge from " + text_of(edge.first) + " to " + text_of(edge.second),
                         "belongs to " + std::to_string(count.first + count.second) + " facets, " +
                             std::to_string(count.first) + " of them one way round",
                         "the surface must be closed and its facets turned alike; mend it in a "

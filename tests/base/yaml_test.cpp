@@ -36,6 +36,17 @@ TEST(Yaml, RefusesDocumentsThatUnfoldWithoutEnd) {
   EXPECT_THROW(parse_yaml(bomb, "bomb.yaml"), ConfigError);
 }
 
+TEST(Yaml, RefusesASecondDocument) {
+  try {
+    parse_yaml("a: 1\n---\nb: 2\n", "two.yaml");
+    ADD_FAILURE() << "the second document was ignored";
+  } catch (const ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("two.yaml:3:1: a second document"), std::string::npos)
+        << error.what();
+  }
+  EXPECT_EQ(parse_yaml("---\na: 1\n", "one.yaml").entries.size(), 1u);
+}
+
 TEST(Yaml, SyntaxErrorsNameTheLine) {
   try {
     parse_yaml("a: [1, 2\nb: 3\n", "f.yaml");

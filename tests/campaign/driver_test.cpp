@@ -1,126 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The manager against a scheduler in memory and a clock that tests turn.
-#include "campaign/drive/driver.hpp"
-
-#include <gtest/gtest.h>
-
 #include <array>
-#include <map>
 #include <random>
 
-#include "base/atomic_file.hpp"
-#include "campaign/drive/launch.hpp"
-#include "campaign/drive/wishes.hpp"
-#include "small_campaign.hpp"
-#include "tests/support/temporary_directory.hpp"
+#include "driving.hpp"
 
 namespace grouser {
 namespace {
-
-const LeaseHolder kMe{"here", "boot", 1, 2, 0};
-
-class TestClock : public Clock {
- public:
-  double now() override { return time; }
-  void sleep(double seconds) override { time += seconds; }
-  double time = 1e9;
-};
-
-class TestScheduler : public Scheduler {
- public:
-  SubmitAnswer submit(const JobRequest& request) override {
-    requests.push_back(request);
-    if (next_answer.kind != SubmitAnswer::Kind::kUnclear || takes_unclear)
-      jobs[request.name] = {request.name,
-                            "j" + std::to_string(requests.size()),
-                            JobPhase::kRunning,
-                            JobEnd::kNone,
-                            -1,
-                            ""};
-    SubmitAnswer answer = next_answer;
-    if (answer.kind == SubmitAnswer::Kind::kAccepted) answer.job = jobs[request.name].id;
-    if (answer.kind == SubmitAnswer::Kind::kBusy || answer.kind == SubmitAnswer::Kind::kRefused)
-      jobs.erase(request.name);
-    next_answer = {SubmitAnswer::Kind::kAccepted, "", ""};
-    return answer;
-  }
-  QueryAnswer query(const std::vector<JobKey>& keys) override {
-    QueryAnswer answer;
-    answer.is_complete = can_be_asked;
-    answer.why_not = can_be_asked ? "" : "down";
-    if (!can_be_asked) return answer;
-    for (const JobKey& key : keys)
-      if (jobs.count(key.name) > 0) answer.jobs.push_back(jobs[key.name]);
-    return answer;
-  }
-  std::string cancel(const JobKey& key, CancelMode mode) override {
-    cancelled.emplace_back(key.name, mode);
-    return "";
-  }
-
-  std::vector<JobRequest> requests;
-  std::map<std::string, JobStatus> jobs;
-  std::vector<std::pair<std::string, CancelMode>> cancelled;
-  SubmitAnswer next_answer{SubmitAnswer::Kind::kAccepted, "", ""};
-  bool takes_unclear = true;
-  bool can_be_asked = true;
-};
-
-class Driving : public ::testing::Test {
- protected:
-  explicit Driving(const std::string& head =
-                       "campaign: small\nscheduler: slurm\n"
-                       "resources: {walltime: 1h}\n") {
-    write_atomic(directory_.path() / "c.yaml", small_campaign(kTwoSlips, head));
-    root_ = directory_.path() / "root";
-    std::filesystem::create_directories(root_);
-    store_.emplace(Store::open(root_ / Store::kFileName));
-    store_->take_lease(kMe, [](const LeaseHolder&) { return true; });
-    launch_plan(plan_campaign(directory_.path() / "c.yaml", ""), directory_.path() / "c.yaml",
-                "/bin/true", root_, clock_.now(), *store_);
-  }
-
-  // Each tick is a manager process of its own.
-  TickReport tick(double later = 40.0) {
-    clock_.time += later;
-    return Driver(root_, *store_, scheduler_, clock_).tick();
-  }
-
-  RunRow run(const std::string& start) const {
-    for (const RunRow& one : store_->runs())
-      if (one.label.rfind(start, 0) == 0) return one;
-    throw std::runtime_error("no run " + start);
-  }
-
-  // What an engine that ended leaves behind.
-  void end_engine(const std::string& label, EngineCode code, std::int64_t step, double time) {
-    const RunRow of = run(label);
-    const AttemptRow attempt = store_->attempts(of.id).back();
-    Outcome outcome;
-    outcome.token = attempt.token;
-    outcome.code = code;
-    outcome.step = step;
-    outcome.time = time;
-    outcome.checkpoint = "c.h5";
-    write_atomic(root_ / of.directory / run_files::outcome(attempt.token), to_json(outcome));
-    JobStatus& job = scheduler_.jobs[job_name(attempt.token)];
-    job.phase = JobPhase::kEnded;
-    job.end = code == EngineCode::kFinished ? JobEnd::kDone : JobEnd::kFailed;
-    job.exit_code = static_cast<int>(code);
-  }
-
-  void settle_bed() {
-    tick();
-    end_engine("bed", EngineCode::kFinished, 50, 0.05);
-    tick();
-  }
-
-  TemporaryDirectory directory_;
-  std::filesystem::path root_;
-  TestClock clock_;
-  TestScheduler scheduler_;
-  std::optional<Store> store_;
-};
 
 TEST_F(Driving, RunsWaitForTheirBed) {
   tick();
@@ -251,6 +137,33 @@ TEST_F(Driving, AStopLeavesTheStopFileAndHoldsTheRun) {
   EXPECT_EQ(run("towed").state, State::kQueued);
 }
 
+// scancel sends TERM too, and the engine cannot tell who sent it.
+TEST_F(Driving, APersonsScancelHoldsTheRunAndKeepsItsCheckpoint) {
+  tick();
+  end_engine("bed", EngineCode::kPaused, 30, 0.03, true);
+  scheduler_.jobs.begin()->second.end = JobEnd::kCancelled;
+  tick();
+  EXPECT_EQ(run("bed").state, State::kHeld);
+  EXPECT_EQ(run("bed").step, 30);
+  EXPECT_EQ(store_->attempts().back().state, State::kChunkDone);
+}
+
+TEST_F(Driving, ASignalOfTheBatchSystemGoesOnByItself) {
+  tick();
+  end_engine("bed", EngineCode::kPaused, 30, 0.03, true);
+  scheduler_.jobs.begin()->second.end = JobEnd::kTimeout;
+  tick();
+  EXPECT_EQ(run("bed").state, State::kQueued);
+  EXPECT_EQ(store_->attempts().back().start_step, 30);
+}
+
+TEST_F(Driving, TheEngineIsToldToStartOrGoOnAndHowLongItMayTake) {
+  tick();
+  const std::string script = read_file(scheduler_.requests.front().script).value();
+  EXPECT_NE(script.find("'--restart' 'auto'"), std::string::npos) << script;
+  EXPECT_NE(script.find("'--max-seconds' '3420'"), std::string::npos) << script;
+}
+
 TEST_F(Driving, ACancelIsPoliteFirst) {
   tick();
   ASSERT_TRUE(make_wish(*store_, run("bed"), Wish::kCancel, clock_.now()));
@@ -264,30 +177,6 @@ TEST_F(Driving, ACancelIsPoliteFirst) {
   tick();
   tick();
   EXPECT_EQ(run("bed").state, State::kCancelled);
-}
-
-TEST_F(Driving, LaunchingAgainChangesNothing) {
-  tick();
-  const auto before = store_->runs();
-  launch_plan(plan_campaign(directory_.path() / "c.yaml", ""), directory_.path() / "c.yaml",
-              "/bin/true", root_, clock_.now(), *store_);
-  EXPECT_EQ(store_->runs().size(), before.size());
-  EXPECT_EQ(run("bed").state, State::kQueued);
-}
-
-TEST_F(Driving, AChangedCaseBecomesANewRunAndTheOldOneStays) {
-  std::string yaml = small_campaign(kTwoSlips,
-                                    "campaign: small\nscheduler: slurm\n"
-                                    "resources: {walltime: 2h}\n");
-  yaml.replace(yaml.find("slip: 20 %"), 10, "slip: 25 %");
-  write_atomic(directory_.path() / "c.yaml", yaml);
-  const Plan plan = plan_campaign(directory_.path() / "c.yaml", "");
-  const auto report = compare_plan(plan, directory_.path() / "c.yaml", root_, *store_);
-  EXPECT_EQ(report.added, std::vector<std::string>{"slip_20"});
-  EXPECT_EQ(report.gone, std::vector<std::string>{"slip_20"});
-  EXPECT_TRUE(report.settings_changed);
-  launch_plan(plan, directory_.path() / "c.yaml", "/bin/true", root_, clock_.now(), *store_);
-  EXPECT_EQ(store_->runs().size(), 4u);
 }
 
 // Whatever answers a scheduler gives and whatever engines do, a run never has two live jobs.

@@ -104,11 +104,11 @@ TEST(Look, AnOutcomeWaitsForItsJobToEndButNotForEver) {
 }
 
 // scancel also sends TERM: only the scheduler tells a person's cancel from the walltime.
-TEST(Look, AStopBySignalWaitsForTheSchedulersWord) {
+TEST(Look, APauseBySignalWaitsForTheSchedulersWord) {
   Evidence evidence = answered();
-  evidence.outcome = outcome(EngineCode::kStopped, 150, 0.15);
-  evidence.exit = exit_record(12);
-  evidence.stop_text = "signal";
+  evidence.outcome = outcome(EngineCode::kPaused, 150, 0.15);
+  evidence.outcome->by_signal = true;
+  evidence.exit = exit_record(10);
   evidence.job = job(JobPhase::kRunning);
   EXPECT_FALSE(look(running_attempt(), evidence, policy(), kNow).ending);
   evidence.job = job(JobPhase::kEnded, JobEnd::kTimeout);
@@ -117,6 +117,18 @@ TEST(Look, AStopBySignalWaitsForTheSchedulersWord) {
   evidence.job = job(JobPhase::kEnded, JobEnd::kCancelled);
   EXPECT_EQ(look(running_attempt(), evidence, policy(), kNow).ending->outcome_class,
             OutcomeClass::kUser);
+}
+
+TEST(Look, APauseWithoutASignalIsBelievedWhateverBecameOfTheJob) {
+  Evidence evidence = answered();
+  evidence.outcome = outcome(EngineCode::kPaused, 150, 0.15);
+  evidence.exit = exit_record(10);
+  evidence.job = job(JobPhase::kRunning);
+  EXPECT_EQ(look(running_attempt(), evidence, policy(), kNow).ending->outcome_class,
+            OutcomeClass::kContinue);
+  evidence.job = job(JobPhase::kEnded, JobEnd::kCancelled);
+  EXPECT_EQ(look(running_attempt(), evidence, policy(), kNow).ending->outcome_class,
+            OutcomeClass::kContinue);
 }
 
 TEST(Look, OnSharedFileSystemsAnEndIsLookedAtTwiceBeforeTheOutcomeIsMissed) {

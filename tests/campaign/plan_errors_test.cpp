@@ -134,6 +134,29 @@ TEST(CampaignErrors, ABatchSchedulerNeedsAWalltime) {
                {"has no walltime, and scheduler slurm needs one"});
 }
 
+TEST(CampaignErrors, ABatchWalltimeNeedsRoomForTheStop) {
+  for (const char* scheduler : {"slurm", "pbs"})
+    EXPECT_EQ(problems_of(small_campaign("scheduler: " + std::string(scheduler) +
+                                         "\nresources: {walltime: 59 s}\n")),
+              "c.yaml:23:23: resources.walltime: is under 60 s, which is too short for " +
+                  std::string(scheduler) +
+                  "; batch systems count in minutes, and the engine stops 30 s or more before "
+                  "the end");
+  EXPECT_EQ(problems_of(small_campaign("scheduler: slurm\nresources: {walltime: 60 s}\n")), "");
+  EXPECT_EQ(problems_of(small_campaign("resources: {walltime: 2 s}\n")), "");
+}
+
+// Keys of a later version would all be unknown.
+TEST(CampaignErrors, AnotherVersionIsTheOnlyThingSaid) {
+  EXPECT_EQ(problems_of("grouser: 2\ncampaign: small\nphysics: {}\n"),
+            "c.yaml:1:10: grouser: the file is of version 2, and this grouser knows version 1; "
+            "use a newer grouser");
+  EXPECT_EQ(problems_of(small_campaign(""), "grouser_site: 3\nqueue: x\n"),
+            "site.yaml:1:15: grouser_site: the file is of version 3, and this grouser knows "
+            "version 1; use a newer grouser");
+  expect_parts(problems_of("grouser: one\n"), {"grouser: 'one' is not a whole number"});
+}
+
 TEST(CampaignErrors, WhatPbsCannotSayIsRefused) {
   expect_parts(
       problems_of(small_campaign("scheduler: pbs\nresources: {walltime: 1h, qos: fast}\n")),
@@ -156,6 +179,21 @@ TEST(CampaignErrors, MissingFilesAreNamed) {
                    "      - {label: a, set: {wheel.profile: stl, wheel.stl_file: w.stl}}\n")),
                {"resources.setup_file: '", "env.sh' is not a file", "case.wheel.stl_file: '",
                 "w.stl' is not a file"});
+}
+
+TEST(CampaignErrors, ASurfaceFileMustHoldASurface) {
+  TemporaryDirectory elsewhere;
+  write_atomic(elsewhere.path() / "empty.stl", "");
+  const auto with = [](const std::filesystem::path& file) {
+    return problems_of(
+        small_campaign("sweep:\n  - axis: w\n    points:\n"
+                       "      - {label: a, set: {wheel.profile: stl, wheel.stl_file: " +
+                       file.string() + "}}\n"));
+  };
+  const std::string empty = with(elsewhere.path() / "empty.stl");
+  expect_parts(empty, {"c.yaml:25:62: case.wheel.stl_file: '", "empty.stl' is empty"});
+  EXPECT_EQ(count_lines(empty), 1u) << empty;
+  expect_parts(with(elsewhere.path()), {"' is not a file"});
 }
 
 TEST(CampaignErrors, AReportThatIsNoMapIsRefused) {

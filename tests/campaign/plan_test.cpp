@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/atomic_file.hpp"
+#include "base/hash.hpp"
 #include "campaign/cli/starter.hpp"
 #include "campaign/plan/expand.hpp"
 #include "campaign/plan/names.hpp"
@@ -94,12 +95,22 @@ TEST_F(Planning, ChunksOfAGivenLengthAlsoCutBeds) {
   EXPECT_EQ(chunk_ends({0, 0.0}, 0.8, 5.0).size(), 1u);
 }
 
-TEST_F(Planning, SurfaceFilesCountFromTheYaml) {
+TEST_F(Planning, SurfaceFilesCountFromTheYamlAndAreNamedByTheirContent) {
+  const auto plan_with = [&](const std::string& file) {
+    return plan(
+        small_campaign("sweep:\n  - axis: w\n    points:\n"
+                       "      - {label: a, set: {wheel.profile: stl, wheel.stl_file: " +
+                       file + "}}\n"));
+  };
   write_atomic(directory_.path() / "w.stl", "solid");
-  const Plan made = plan(
-      small_campaign("sweep:\n  - axis: w\n    points:\n"
-                     "      - {label: a, set: {wheel.profile: stl, wheel.stl_file: w.stl}}\n"));
-  EXPECT_EQ(made.runs[1].input.wheel.stl_file, (directory_.path() / "w.stl").string());
+  write_atomic(directory_.path() / "copy.stl", "solid");
+  const Plan made = plan_with("w.stl");
+  EXPECT_EQ(made.runs[1].surface, directory_.path() / "w.stl");
+  EXPECT_EQ(made.runs[1].input.wheel.stl_file, "../../surfaces/" + hash_text("solid") + ".stl");
+  EXPECT_EQ(made.runs[0].surface, "");
+  EXPECT_EQ(plan_with("copy.stl").runs[1].key, made.runs[1].key);
+  write_atomic(directory_.path() / "w.stl", "solid, mended");
+  EXPECT_NE(plan_with("w.stl").runs[1].key, made.runs[1].key);
 }
 
 TEST_F(Planning, ASiteReplacesSchedulerAndResources) {

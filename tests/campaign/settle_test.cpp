@@ -10,7 +10,7 @@ namespace {
 struct Row {
   EngineCode code;
   const char* request;
-  const char* stop_text;
+  bool by_signal;
   bool progressed;
   const char* outcome_class;
   State run;
@@ -19,14 +19,14 @@ struct Row {
 };
 
 void PrintTo(const Row& row, std::ostream* out) {
-  *out << word_of(row.code) << " request '" << row.request << "' stop '" << row.stop_text << "'"
-       << (row.progressed ? " with progress" : "");
+  *out << word_of(row.code) << " request '" << row.request << "'"
+       << (row.by_signal ? " by signal" : "") << (row.progressed ? " with progress" : "");
 }
 
 std::string name_of(const ::testing::TestParamInfo<Row>& row) {
   std::string name = word_of(row.param.code);
-  for (const std::string part : {row.param.request, row.param.stop_text})
-    if (!part.empty()) name += "_" + part;
+  if (*row.param.request != '\0') name += std::string("_") + row.param.request;
+  if (row.param.by_signal) name += "_signal";
   return name + (row.param.progressed ? "_progressed" : "");
 }
 
@@ -39,7 +39,7 @@ TEST_P(Outcomes, DecideWhatComesNext) {
   if (row.progressed) evidence.newest = checkpoint(150);
   evidence.exit = exit_record(static_cast<int>(row.code));
   evidence.job = job(JobPhase::kEnded, JobEnd::kFailed, static_cast<int>(row.code));
-  evidence.stop_text = row.stop_text;
+  evidence.outcome->by_signal = row.by_signal;
   RunRow run = running_run();
   run.request = row.request;
   ChunkRow chunk;
@@ -58,44 +58,44 @@ TEST_P(Outcomes, DecideWhatComesNext) {
 
 INSTANTIATE_TEST_SUITE_P(Table, Outcomes,
                          ::testing::Values(
-                             // code, request, stop file, progress -> class, run, attempt, chunk
-                             Row{EngineCode::kFinished, "", "", true, "DONE", State::kCompleted,
+                             // code, request, by signal, progress -> class, run, attempt, chunk
+                             Row{EngineCode::kFinished, "", false, true, "DONE", State::kCompleted,
                                  State::kCompleted, State::kCompleted},
-                             Row{EngineCode::kFinished, "cancel", "", true, "DONE",
+                             Row{EngineCode::kFinished, "cancel", false, true, "DONE",
                                  State::kCompleted, State::kCompleted, State::kCompleted},
-                             Row{EngineCode::kSteady, "", "", true, "DONE", State::kSteady,
+                             Row{EngineCode::kSteady, "", false, true, "DONE", State::kSteady,
                                  State::kSteady, State::kSteady},
-                             Row{EngineCode::kPaused, "", "", true, "CONTINUE", State::kChunkDone,
-                                 State::kChunkDone, State::kChunkDone},
-                             Row{EngineCode::kPaused, "", "", false, "PLUMBING", State::kReady,
-                                 State::kFailed, State::kReady},
-                             Row{EngineCode::kPaused, "stop", "", true, "CONTINUE", State::kHeld,
-                                 State::kChunkDone, State::kChunkDone},
-                             Row{EngineCode::kPaused, "cancel", "", true, "CONTINUE",
-                                 State::kCancelled, State::kCancelled, State::kCancelled},
-                             Row{EngineCode::kStopped, "stop", "user", true, "USER", State::kHeld,
-                                 State::kChunkDone, State::kHeld},
-                             Row{EngineCode::kStopped, "", "user", true, "USER", State::kHeld,
-                                 State::kChunkDone, State::kHeld},
-                             Row{EngineCode::kStopped, "", "signal", true, "CONTINUE",
+                             Row{EngineCode::kPaused, "", false, true, "CONTINUE",
                                  State::kChunkDone, State::kChunkDone, State::kChunkDone},
-                             Row{EngineCode::kStopped, "cancel", "signal", true, "CONTINUE",
+                             Row{EngineCode::kPaused, "", false, false, "PLUMBING", State::kReady,
+                                 State::kFailed, State::kReady},
+                             Row{EngineCode::kPaused, "stop", false, true, "CONTINUE", State::kHeld,
+                                 State::kChunkDone, State::kChunkDone},
+                             Row{EngineCode::kPaused, "cancel", false, true, "CONTINUE",
                                  State::kCancelled, State::kCancelled, State::kCancelled},
-                             Row{EngineCode::kInputRefused, "", "", false, "USER", State::kHeld,
+                             Row{EngineCode::kStopped, "stop", false, true, "USER", State::kHeld,
+                                 State::kChunkDone, State::kHeld},
+                             Row{EngineCode::kStopped, "", false, true, "USER", State::kHeld,
+                                 State::kChunkDone, State::kHeld},
+                             Row{EngineCode::kPaused, "", true, true, "CONTINUE", State::kChunkDone,
+                                 State::kChunkDone, State::kChunkDone},
+                             Row{EngineCode::kPaused, "cancel", true, true, "CONTINUE",
+                                 State::kCancelled, State::kCancelled, State::kCancelled},
+                             Row{EngineCode::kInputRefused, "", false, false, "USER", State::kHeld,
                                  State::kFailed, State::kHeld},
-                             Row{EngineCode::kCheckpointRefused, "", "", false, "RESOURCE",
+                             Row{EngineCode::kCheckpointRefused, "", false, false, "RESOURCE",
                                  State::kHeld, State::kFailed, State::kHeld},
-                             Row{EngineCode::kFenceLost, "", "", false, "PLUMBING", State::kReady,
-                                 State::kFailed, State::kReady},
-                             Row{EngineCode::kBrokeDown, "", "", true, "PHYSICS", State::kHeld,
+                             Row{EngineCode::kFenceLost, "", false, false, "PLUMBING",
+                                 State::kReady, State::kFailed, State::kReady},
+                             Row{EngineCode::kBrokeDown, "", false, true, "PHYSICS", State::kHeld,
                                  State::kFailed, State::kHeld},
-                             Row{EngineCode::kStorageFailed, "", "", true, "RESOURCE", State::kHeld,
-                                 State::kFailed, State::kHeld},
-                             Row{EngineCode::kParallelFailed, "", "", false, "INFRA", State::kReady,
-                                 State::kFailed, State::kReady},
-                             Row{EngineCode::kParallelFailed, "stop", "", false, "INFRA",
+                             Row{EngineCode::kStorageFailed, "", false, true, "RESOURCE",
                                  State::kHeld, State::kFailed, State::kHeld},
-                             Row{EngineCode::kDefect, "", "", true, "DEFECT", State::kHeld,
+                             Row{EngineCode::kParallelFailed, "", false, false, "INFRA",
+                                 State::kReady, State::kFailed, State::kReady},
+                             Row{EngineCode::kParallelFailed, "stop", false, false, "INFRA",
+                                 State::kHeld, State::kFailed, State::kHeld},
+                             Row{EngineCode::kDefect, "", false, true, "DEFECT", State::kHeld,
                                  State::kFailed, State::kHeld}),
                          name_of);
 
@@ -205,6 +205,22 @@ TEST(Settle, APauseAtTheEndOfTheChunkNeedsNoStep) {
       settle(run, chunk, attempt, {OutcomeClass::kContinue, 10, ""}, evidence, policy(), kNow);
   EXPECT_EQ(change.run->state, State::kChunkDone);
   EXPECT_EQ(change.run->failures, 0);
+}
+
+// The signal was a person's: nothing failed, and nothing goes on by itself.
+TEST(Settle, AScancelHoldsTheRunAtItsCheckpoint) {
+  Evidence evidence = answered();
+  evidence.outcome = outcome(EngineCode::kPaused, 150, 0.15);
+  evidence.outcome->by_signal = true;
+  evidence.job = job(JobPhase::kEnded, JobEnd::kCancelled);
+  const Sighting sighting = look(running_attempt(), evidence, policy(), kNow);
+  ASSERT_TRUE(sighting.ending);
+  const Change change = settle(running_run(), ChunkRow{}, sighting.attempt, *sighting.ending,
+                               evidence, policy(), kNow);
+  EXPECT_EQ(change.run->state, State::kHeld);
+  EXPECT_EQ(change.run->reason, "the job was cancelled (WORD)");
+  EXPECT_EQ(change.run->step, 150);
+  EXPECT_EQ(change.attempt->state, State::kChunkDone);
 }
 
 // A broken-down run stays at its last good checkpoint, whatever step it broke at.

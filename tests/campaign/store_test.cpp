@@ -11,6 +11,7 @@
 #include "campaign/drive/clock.hpp"
 #include "campaign/drive/lease_guard.hpp"
 #include "campaign/store/journal_mode.hpp"
+#include "campaign/store/storage_advice.hpp"
 #include "schedulers/command.hpp"
 #include "schedulers/process.hpp"
 #include "tests/support/temporary_directory.hpp"
@@ -41,12 +42,13 @@ NewRun wheel_run(const std::string& label) {
   return run;
 }
 
+CampaignRow campaign() { return {"name", "title", "/x/c.yaml", "settings", "/bin/engine", 12.5}; }
+
 class Database : public ::testing::Test {
  protected:
   Database() {
     store_.take_lease(kMe, [](const LeaseHolder&) { return false; });
-    store_.put_campaign({"name", "title", "/x/c.yaml", "settings", "/bin/engine", 12.5});
-    store_.add_runs({bed_run(), wheel_run("a"), wheel_run("b")});
+    store_.replace_plan({campaign(), {}, {bed_run(), wheel_run("a"), wheel_run("b")}, {}});
   }
   AttemptRow start(const RunRow& run, const std::string& token) {
     const ChunkRow chunk = store_.chunks(run.id).front();
@@ -70,6 +72,7 @@ TEST_F(Database, RunsReadBackAsWritten) {
   EXPECT_EQ(runs[0].bed, std::nullopt);
   EXPECT_EQ(runs[2].bed, runs[0].id);
   EXPECT_EQ(runs[2].label, "b");
+  EXPECT_TRUE(runs[2].in_plan);
   ASSERT_EQ(runs[2].axes.size(), 2u);
   EXPECT_EQ(runs[2].axes[0].axis, "slip");
   EXPECT_EQ(runs[2].axes[1].label, "s1");
@@ -131,6 +134,63 @@ TEST_F(Database, AnInsertedChunkMovesTheLaterOnesUp) {
   for (std::size_t i = 0; i < after.size(); ++i)
     EXPECT_EQ(after[i].position, static_cast<std::int64_t>(i));
   EXPECT_EQ(store_.chunks(store_.runs()[2].id).size(), 3u);
+}
+
+TEST_F(Database, ALabelMayPassFromOneRunToAnother) {
+  auto runs = store_.runs();
+  std::swap(runs[1].label, runs[2].label);
+  runs[1].in_plan = false;
+  runs[2].axes = {{"drive", "towed"}};
+  NewRun added = wheel_run("c");
+  store_.replace_plan({campaign(), {runs[1], runs[2]}, {added}, {}});
+  const auto after = store_.runs();
+  ASSERT_EQ(after.size(), 4u);
+  EXPECT_EQ(after[1].label, "b");
+  EXPECT_FALSE(after[1].in_plan);
+  EXPECT_EQ(after[2].label, "a");
+  EXPECT_EQ(after[2].axes, (std::vector<AxisLabel>{{"drive", "towed"}}));
+  EXPECT_EQ(after[3].bed, after[0].id);
+}
+
+TEST_F(Database, APlanIsReplacedWhollyOrNotAtAll) {
+  RunRow left = store_.runs()[1];
+  left.in_plan = false;
+  left.label = "a-old";
+  CampaignRow other = campaign();
+  other.title = "other";
+  // The added run's label is still taken.
+  EXPECT_THROW(store_.replace_plan({other, {left}, {wheel_run("b")}, {}}), StorageError);
+  EXPECT_EQ(store_.campaign().title, "title");
+  EXPECT_EQ(store_.runs()[1].label, "a");
+  EXPECT_TRUE(store_.runs()[1].in_plan);
+}
+
+TEST_F(Database, ChunksAreCutAnewButForThoseOfAttempts) {
+  const RunRow run = store_.runs()[1];
+  start(run, "t1");
+  Change finish;  // early, so that the chunks after it were dropped
+  finish.run = run;
+  finish.chunk = store_.chunks(run.id).front();
+  finish.chunk->state = State::kCompleted;
+  finish.chunk->step = 9;
+  finish.drop_planned_chunks = true;
+  store_.apply(finish);
+  ASSERT_EQ(store_.chunks(run.id).size(), 1u);
+  store_.replace_plan({campaign(), {}, {}, {{run.id, {0.05, 0.15, std::nullopt}}}});
+  const auto chunks = store_.chunks(run.id);
+  ASSERT_EQ(chunks.size(), 3u);
+  EXPECT_EQ(chunks[0].id, finish.chunk->id);
+  EXPECT_EQ(chunks[0].until_time, 0.1);
+  EXPECT_EQ(chunks[0].step, 0);
+  EXPECT_EQ(chunks[1].until_time, 0.15);
+  EXPECT_EQ(chunks[2].until_time, std::nullopt);
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    EXPECT_EQ(chunks[i].state, State::kPlanned);
+    EXPECT_EQ(chunks[i].position, static_cast<std::int64_t>(i));
+  }
+  const RunId untouched = store_.runs()[2].id;
+  store_.replace_plan({campaign(), {}, {}, {{untouched, {std::nullopt}}}});
+  EXPECT_EQ(store_.chunks(untouched).size(), 1u);
 }
 
 TEST_F(Database, WritingNeedsTheLease) {
@@ -212,7 +272,13 @@ TEST_F(Database, AForeignOrDamagedFileIsRefused) {
   ASSERT_EQ(run_command({"sqlite3", other.string(), "CREATE TABLE t (x)"}, 10.0).code, 0);
   EXPECT_THROW(Store::open(other), FormatError);
   std::ofstream(directory_.path() / "text.db") << std::string(4096, 'x');
-  EXPECT_THROW(Store::open(directory_.path() / "text.db"), StorageError);
+  try {
+    Store::open(directory_.path() / "text.db");
+    FAIL() << "opened a text as a database";
+  } catch (const StorageError& error) {
+    EXPECT_NE(std::string(error.what()).find("put a backup in its place"), std::string::npos)
+        << error.what();
+  }
   EXPECT_THROW(Store::open_read_only(directory_.path() / "none.db"), StorageError);
 }
 
@@ -220,6 +286,21 @@ TEST_F(Database, AReaderIsNotHeldUpByAWriter) {
   const Store reader = Store::open_read_only(file());
   start(store_.runs()[1], "t1");
   EXPECT_EQ(reader.active_attempts().size(), 1u);
+}
+
+// SQLite's result codes; sqlite3.h stays behind its fence.
+TEST(StorageAdvice, SaysWhatToDo) {
+  constexpr int kError = 1, kBusy = 5, kReadOnly = 8, kInputOutput = 10, kCorrupt = 11, kFull = 13;
+  constexpr int kShortRead = kInputOutput | (2 << 8);
+  const auto says = [](int code, const char* part) {
+    return storage_advice(code).find(part) != std::string::npos;
+  };
+  EXPECT_TRUE(says(kFull, "free some space, then the same command goes on"));
+  EXPECT_TRUE(says(kBusy, "another program holds it"));
+  EXPECT_TRUE(says(kCorrupt, "nothing in the run directories is lost"));
+  EXPECT_TRUE(says(kShortRead, "the file system failed"));
+  EXPECT_TRUE(says(kReadOnly, "may read and write"));
+  EXPECT_EQ(storage_advice(kError), "");
 }
 
 TEST(JournalMode, SharedFileSystemsDoWithoutSharedMemory) {

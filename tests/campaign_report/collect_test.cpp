@@ -45,8 +45,8 @@ class CampaignOnDisk : public testing::Test {
     campaign.source = root_ / "campaign.yaml";
     campaign.engine = "/opt/grouser-engine";
     campaign.created_at = 1.0e9;
-    store.put_campaign(campaign);
-    store.add_runs({new_run(1, State::kCompleted), new_run(2, State::kRunning)});
+    store.replace_plan(
+        {campaign, {}, {new_run(1, State::kCompleted), new_run(2, State::kRunning)}, {}});
     add_attempt(store, store.runs()[0]);
     write_run(1, 0.4);
     write_run(2, 0.3);
@@ -148,6 +148,46 @@ TEST_F(CampaignOnDisk, DamagedAndMissingFilesBecomeWarnings) {
   EXPECT_EQ(data.warnings.size(), 3u);
   EXPECT_TRUE(data.runs[1].slice.grains.empty());
   EXPECT_EQ(markup::first_fault(text_of(write_report({root_}))), "");
+}
+
+TEST_F(CampaignOnDisk, RunsThatTheYamlNoLongerHasAreLeftOut) {
+  Store store = Store::open(root_ / Store::kFileName);
+  store.take_lease({"host", "boot", 1, 1, 0}, [](const LeaseHolder&) { return true; });
+  Change change;
+  change.run = store.runs()[0];
+  change.run->in_plan = false;
+  store.apply(change);
+  const ReportData data = collect_report(root_, 1.0e9);
+  ASSERT_EQ(data.runs.size(), 1u);
+  EXPECT_EQ(data.runs[0].label, "slip_20_s2");
+  EXPECT_TRUE(data.runs[0].attempts.empty()) << "the attempt is of the other run";
+  write_report({root_});
+  EXPECT_EQ(parse_csv(text_of(root_ / "report/results.csv")).rows.size(), 1u);
+}
+
+// The user's file has changed since, and lies elsewhere.
+TEST_F(CampaignOnDisk, SettingsAreThoseThatWereSubmitted) {
+  fs::create_directories(root_ / "home" / "lab");
+  std::ofstream(root_ / "home" / "c.yaml") << "report: {horizontal: powered}\n";
+  std::ofstream(root_ / "campaign.yaml")
+      << "report:\n  horizontal: bounded\n  recordings:\n    - path: lab\n    - path: nowhere\n";
+  const fs::path committed =
+      fs::path(GROUSER_SOURCE_DIR) / "configs/recordings/jelinek2020_wheel_71cm";
+  fs::copy(committed, root_ / "home" / "lab", fs::copy_options::recursive);
+  Store store = Store::open(root_ / Store::kFileName);
+  store.take_lease({"host", "boot", 1, 1, 0}, [](const LeaseHolder&) { return true; });
+  CampaignRow campaign = store.campaign();
+  campaign.source = root_ / "home" / "c.yaml";
+  store.replace_plan({campaign, {}, {}, {}});
+  const ReportData data = collect_report(root_, 1.0e9);
+  EXPECT_EQ(data.settings.horizontal, "bounded");
+  EXPECT_EQ(data.recordings.size(), 1u) << "paths count from the user's file";
+  ASSERT_EQ(data.warnings.size(), 1u);
+  EXPECT_EQ(data.warnings[0].find((root_ / "campaign.yaml").string() +
+                                  ":5:13: report.recordings[1].path: " +
+                                  (root_ / "home/nowhere/recording.yaml").string()),
+            0u)
+      << data.warnings[0];
 }
 
 TEST_F(CampaignOnDisk, SummaryIsForATerminal) {

@@ -153,8 +153,9 @@ TEST(ReportSettings, UnknownWordsAndKeysAreRefused) {
       parse_yaml("horizontal: slipp\nrecordings: [{path: nowhere}]\nneglectd: []\n", "c.yaml"),
       kConfigs, problems);
   const std::string text = text_of(problems);
-  for (const char* const part : {"c.yaml:1:13: horizontal: 'slipp'", "did you mean 'neglected'",
-                                 "nowhere/recording.yaml: cannot be read"})
+  for (const char* const part :
+       {"c.yaml:1:13: horizontal: 'slipp'", "did you mean 'neglected'",
+        "c.yaml:2:21: report.recordings[0].path: ", "nowhere/recording.yaml: cannot be read"})
     EXPECT_NE(text.find(part), std::string::npos) << part << " is missing from\n" << text;
 }
 

@@ -65,7 +65,8 @@ TEST_P(LaunchKilled, AtThisPointCanBeSubmittedAgain) {
   expect_undisturbed_result();
 }
 
-INSTANTIATE_TEST_SUITE_P(Points, LaunchKilled, ::testing::Values("after_directories", "after_runs"),
+INSTANTIATE_TEST_SUITE_P(Points, LaunchKilled,
+                         ::testing::Values("after_directories", "after_runs", "after_cancels"),
                          [](const auto& point) { return std::string(point.param); });
 
 TEST_F(FaultyCampaign, ManagersKilledAtRandomTimesLoseAndDoubleNothing) {

@@ -58,9 +58,71 @@ TEST_F(LocalCampaign, AChangedYamlIsTakenOverOnlyWhenTold) {
   const auto refused = submit();
   EXPECT_EQ(refused.code, 20);
   EXPECT_NE(refused.err.find("--update"), std::string::npos);
+  EXPECT_NE(refused.err.find("submitted in sweep;"), std::string::npos) << refused.err;
   EXPECT_EQ(runs().size(), 4u);
-  EXPECT_EQ(grouser({"submit", "campaign.yaml", "--update", "--every", "0.1"}).code, 0);
+  const auto updated = grouser({"submit", "campaign.yaml", "--update", "--every", "0.1"});
+  EXPECT_EQ(updated.code, 0) << updated.err;
+  EXPECT_NE(updated.out.find("1 runs that the YAML no longer has are cancelled; "
+                             "their files are kept: slip_20"),
+            std::string::npos)
+      << updated.out;
   EXPECT_EQ(runs().size(), 5u);
+  EXPECT_TRUE(run("slip_20").in_plan);
+  const auto status = grouser({"status"});
+  EXPECT_NE(status.out.find("4 COMPLETED\n1 runs that the YAML no longer has are left out"),
+            std::string::npos)
+      << status.out;
+  const Json json = Json::parse(grouser({"status", "--json"}).out);
+  EXPECT_EQ(json["left_out"], 1);
+  EXPECT_EQ(json["runs"].size(), 4u);
+}
+
+TEST_F(LocalCampaign, AChangeThatMakesNoNewRunIsNotSwallowed) {
+  EXPECT_EQ(submit().code, 0);
+  const auto file = directory_.path() / "campaign.yaml";
+  std::string yaml = read_file(file).value();
+  write_atomic(file, "# a remark\n" + yaml);
+  EXPECT_EQ(submit().code, 0);
+  yaml.replace(yaml.find("count: 3"), 8, "count: 4");
+  write_atomic(file, yaml);
+  const auto refused = submit();
+  EXPECT_EQ(refused.code, 20);
+  EXPECT_NE(refused.err.find("submitted in chunks;"), std::string::npos) << refused.err;
+  EXPECT_EQ(grouser({"submit", "campaign.yaml", "--update", "--every", "0.1"}).code, 0);
+  EXPECT_EQ(submit().code, 0);
+  expect_undisturbed_result();
+}
+
+TEST_F(LocalCampaign, ADeletedRunDirectoryIsMadeAgain) {
+  EXPECT_EQ(submit().code, 0);
+  const std::string bed = runs().front().label;
+  for (const std::string& label : {bed, std::string("towed")})
+    std::filesystem::remove_all(root() / run(label).directory);
+  const auto again = submit();
+  EXPECT_EQ(again.code, 0) << again.out << again.err;
+  for (const std::string& label : {bed, std::string("towed")})
+    EXPECT_NE(again.out.find(label + ": its directory is gone; it starts anew"), std::string::npos)
+        << again.out;
+  expect_undisturbed_result();
+  EXPECT_EQ(attempts().size(), 10u + 1u + 3u);
+}
+
+TEST_F(LocalCampaign, AMistypedVerbIsAnsweredWithTheNearest) {
+  const auto refused = grouser({"sbmit", "campaign.yaml"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("did you mean 'submit'?"), std::string::npos) << refused.err;
+  EXPECT_EQ(grouser({"tick", "--every", "nan"}).code, 2);
+}
+
+TEST_F(LocalCampaign, OutputThatCannotBeWrittenIsAnError) {
+  EXPECT_EQ(submit().code, 0);
+  for (const char* words : {"status", "query 'SELECT 1'", "--help"}) {
+    const auto full =
+        run_command({"bash", "-c", std::string(GROUSER_PROGRAM) + " " + words + " >/dev/full"},
+                    20.0, directory_.path());
+    EXPECT_EQ(full.code, 40) << words;
+    EXPECT_NE(full.err.find("standard output cannot be written"), std::string::npos) << full.err;
+  }
 }
 
 TEST_F(LocalCampaign, ADryRunWritesNothing) {
@@ -148,6 +210,14 @@ TEST_F(LocalCampaign, StatusQueryAndShowSpeakJson) {
       grouser({"query", "SELECT run, attempts FROM v_ledger WHERE run = 'towed'", "--json"}).out);
   EXPECT_EQ(query["rows"][0]["attempts"], 3);
   EXPECT_EQ(grouser({"query", "DELETE FROM run"}).code, 20);
+  EXPECT_EQ(grouser({"query", "SELECT 1 AS a, 2 AS a", "--json"}).code, 20);
+  const Json odd =
+      Json::parse(grouser({"query", "SELECT 9e999 AS infinite, x'41ff' AS bytes", "--json"}).out);
+  EXPECT_TRUE(odd["rows"][0]["infinite"].is_null());
+  EXPECT_EQ(odd["rows"][0]["bytes"], "A\xEF\xBF\xBD");
+  const Json expanded =
+      Json::parse(grouser({"expand", "campaign.yaml", "--case", "towed", "--json"}).out);
+  EXPECT_EQ(expanded["case"]["box"]["length"], 0.4);
   const Json show = Json::parse(grouser({"show", "slip_*", "--json"}).out);
   EXPECT_EQ(show["runs"].size(), 2u);
   EXPECT_EQ(show["runs"][0]["chunks"].size(), 3u);

@@ -51,7 +51,7 @@ struct Options {
   std::string token;
   fs::path bed;
   double until_time = INFINITY;
-  double walltime = INFINITY;
+  double max_seconds = INFINITY;
 };
 
 Options parse(int argc, char** argv) {
@@ -62,7 +62,7 @@ Options parse(int argc, char** argv) {
   options.token = given["--token"];
   options.bed = given["--bed"];
   if (given.count("--until-time") > 0) options.until_time = std::stod(given["--until-time"]);
-  if (given.count("--walltime") > 0) options.walltime = std::stod(given["--walltime"]);
+  if (given.count("--max-seconds") > 0) options.max_seconds = std::stod(given["--max-seconds"]);
   return options;
 }
 
@@ -221,10 +221,13 @@ class FakeEngine {
   EngineCode advance() {
     if (has_faults_ && !variable("FAKE_STUCK").empty()) return EngineCode::kPaused;
     while (state_.step < last_step_) {
-      if (state_.time() >= options_.until_time || seconds() >= options_.walltime)
+      if (state_.time() >= options_.until_time || seconds() >= options_.max_seconds)
         return pause(EngineCode::kPaused);
-      if (is_terminated != 0 || fs::exists(options_.run_dir / run_files::kStop))
-        return pause(EngineCode::kStopped);
+      // The job script turns signals of the batch system into a stop file of its own.
+      const auto stop = read_file(options_.run_dir / run_files::kStop);
+      by_signal_ = is_terminated != 0 || (stop && stop->rfind("signal", 0) == 0);
+      if (by_signal_) return pause(EngineCode::kPaused);
+      if (stop) return pause(EngineCode::kStopped);
       if (const auto code = fail_if_told()) return *code;
       state_.advance();
       if (pace_ > 0) ::usleep(pace_);
@@ -245,6 +248,7 @@ class FakeEngine {
     Outcome outcome;
     outcome.token = options_.token;
     outcome.code = code;
+    outcome.by_signal = by_signal_;
     outcome.reason = std::string("fake engine: ") + word_of(code);
     outcome.step = state_.step;
     outcome.time = state_.time();
@@ -265,6 +269,7 @@ class FakeEngine {
 
   Options options_;
   bool has_faults_ = true;
+  bool by_signal_ = false;
   useconds_t pace_ = 0;
   Case input_;
   std::string key_;
@@ -282,7 +287,8 @@ class FakeEngine {
 }  // namespace grouser
 
 int main(int argc, char** argv) {
-  ::signal(SIGTERM, [](int) { grouser::is_terminated = 1; });
+  for (const int number : {SIGTERM, SIGUSR1, SIGUSR2})
+    ::signal(number, [](int) { grouser::is_terminated = 1; });
   try {
     return grouser::FakeEngine(grouser::parse(argc, argv)).run();
   } catch (const std::exception& error) {

@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Builds the benchmarks and runs one of them; see docs/performance/.
+#   bench/run.sh dem [--json FILE] [--quick]
+# dem: the DEM engine beside LAMMPS, LIGGGHTS and YADE on one settled bed. The first call prepares
+# the bed (about ten minutes) and keeps it under build/bench/data.
+# GROUSER_BENCH_BUILD: another build folder.
+set -euo pipefail
+root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
+build=${GROUSER_BENCH_BUILD:-$root/build/bench}
+
+if [ "${1:-}" != dem ]; then
+  sed -n '3,8s/^# \{0,1\}//p' -- "${BASH_SOURCE[0]}" >&2
+  exit 2
+fi
+shift
+
+export OMP_NUM_THREADS=1
+if [ "$(id -u)" -eq 0 ]; then
+  export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+fi
+mpi() { mpirun --oversubscribe --bind-to none -np "$@"; }
+
+# hash_of FILE...: names a prepared bed by what it is made from.
+hash_of() { cat -- "$@" | sha256sum | cut -c 1-12; }
+
+# parameters.in is written last: without it a bed is not complete.
+prepare_bed() {
+  [ ! -f "$bed/parameters.in" ] || return 0
+  echo "bench: preparing the bed in $bed" >&2
+  mkdir -p -- "$bed"
+  cp -- "$root/bench/dem/bed.yaml" "$bed/case.yaml"
+  echo bench >"$bed/fence"
+  mpi 2 "$build/bin/grouser-engine" --run-dir "$bed" --token bench
+  "$build/bin/dem_bench" export "$bed"
+}
+
+prepare_wheel() {
+  [ ! -f "$wheel/parameters.in" ] || return 0
+  echo "bench: lowering the wheel into the bed in $wheel" >&2
+  mkdir -p -- "$wheel"
+  cat -- "$root/bench/dem/bed.yaml" "$root/bench/dem/wheel.yaml" >"$wheel/case.yaml"
+  mpi 2 "$build/bin/dem_bench" sink "$bed" "$wheel"
+}
+
+(cd -- "$root" && cmake --preset release -B "$build" -DGROUSER_BENCH=ON) >&2
+cmake --build "$build" --target grouser-engine dem_bench >&2
+bed=$build/data/bed-$(hash_of "$root/bench/dem/bed.yaml")
+wheel=$build/data/wheel-$(hash_of "$root"/bench/dem/{bed,wheel}.yaml "$root/bench/wheel_bed.cpp")
+prepare_bed
+prepare_wheel
+python3 "$root/bench/dem/compare.py" "$build/bin/dem_bench" "$bed" "$wheel" "$@"

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <functional>
+
+#include "base/units.hpp"
+#include "campaign/cli/drive_options.hpp"
+#include "campaign/cli/find.hpp"
+#include "campaign/cli/json_text.hpp"
+#include "campaign/cli/progress.hpp"
+#include "campaign/cli/wish.hpp"
+#include "driving.hpp"
+#include "schedulers/local.hpp"
+
+namespace grouser {
+namespace {
+
+std::string problems_of(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(JsonText, IsValidWhateverSqliteAnswers) {
+  Table table;
+  table.columns = {"number", "infinite", "negative", "nothing", "text", "bytes"};
+  table.rows = {{"1.5", "Inf", "-Inf", "", "", "a\xff\xfe"}};
+  table.is_text = {{false, false, false, false, true, true}};
+  const Json rows = Json::parse(json_text(rows_json(table)));
+  EXPECT_EQ(rows[0]["number"], 1.5);
+  EXPECT_TRUE(rows[0]["infinite"].is_null());
+  EXPECT_TRUE(rows[0]["negative"].is_null());
+  EXPECT_TRUE(rows[0]["nothing"].is_null());
+  EXPECT_EQ(rows[0]["text"], "");
+  EXPECT_EQ(rows[0]["bytes"], "a\xEF\xBF\xBD\xEF\xBF\xBD");
+  EXPECT_EQ(json_text(Json{{"x", NAN}}), "{\n  \"x\": null\n}\n");
+}
+
+TEST(JsonText, ColumnsOfOneNameAreRefused) {
+  Table table;
+  table.columns = {"label", "state", "label"};
+  EXPECT_EQ(problems_of([&] { rows_json(table); }),
+            "query: two columns are called 'label'; JSON needs names of their own: say AS NAME");
+}
+
+TEST(JsonText, ACaseIsNumbersInSiUnits) {
+  Case input;
+  input.box.length = 0.4;
+  input.grains.seed = 7;
+  input.grains.size_curve = {{4e-4, 0.0}, {8e-4, 1.0}};
+  Json json = case_json(input);
+  EXPECT_EQ(json["box"]["length"], 0.4);
+  EXPECT_EQ(json["grains"]["seed"], 7);
+  EXPECT_EQ(json["grains"]["size_curve"][1]["diameter"], 8e-4);
+  EXPECT_EQ(json["contact"]["law"], "hertz_mindlin");
+  EXPECT_FALSE(json.contains("wheel"));
+  input.has_wheel = true;
+  EXPECT_TRUE(case_json(input)["wheel"]["load"].is_number());
+}
+
+TEST(DriveOptions, SecondsAreNumbersThatTimeCanTake) {
+  const auto takes = [](const std::string& option, const std::string& value) {
+    CLI::App app;
+    DriveOptions options;
+    add_drive_options(app, options);
+    std::vector<std::string> words{value, option};  // CLI11 wants them from the last to the first
+    try {
+      app.parse(words);
+      return true;
+    } catch (const CLI::ParseError&) {
+      return false;
+    }
+  };
+  for (const char* option : {"--every", "--grace"}) {
+    EXPECT_TRUE(takes(option, "0.5"));
+    for (const char* bad : {"nan", "inf", "-1", "soon", ""})
+      EXPECT_FALSE(takes(option, bad)) << option << " " << bad;
+  }
+  EXPECT_TRUE(takes("--grace", "0"));
+  EXPECT_FALSE(takes("--every", "0"));
+}
+
+TEST(CheckedPlan, RefusesMoreLocalRanksThanTheMachineCanCarry) {
+  TemporaryDirectory directory;
+  const auto file = directory.path() / "c.yaml";
+  const auto with_ranks = [&](int ranks) {
+    write_atomic(file, small_campaign("resources: {ranks: " + std::to_string(ranks) + "}\n"));
+    return problems_of([&] { checked_plan(file.string(), ""); });
+  };
+  const int cores = available_cores();
+  EXPECT_EQ(with_ranks(4 * cores), "");
+  const std::string text = with_ranks(4 * cores + 1);
+  EXPECT_NE(text.find(":22:20: resources.ranks: " + std::to_string(4 * cores + 1) +
+                      " ranks are too many for scheduler local here; this process may use " +
+                      std::to_string(cores) + " cores"),
+            std::string::npos)
+      << text;
+}
+
+TEST(FindRoot, WhatCannotBeLookedAtIsSaidInWords) {
+  TemporaryDirectory directory;
+  const auto loop = directory.path() / "loop";
+  std::filesystem::create_symlink(loop, loop);
+  try {
+    find_root(loop.string());
+    FAIL() << "found a campaign in a loop";
+  } catch (const StorageError& error) {
+    EXPECT_EQ(std::string(error.what()).find("cannot look into " + loop.string() + ": "), 0u)
+        << error.what();
+  }
+}
+
+class Cli : public Driving {};
+
+TEST_F(Cli, ResumeOfARunWithoutDirectoryNamesTheWayOut) {
+  ASSERT_TRUE(make_wish(*store_, run("bed"), Wish::kStop, clock_.now()));
+  const RunRow bed = run("bed");
+  ASSERT_EQ(bed.state, State::kHeld);
+  std::filesystem::remove_all(root_ / bed.directory);
+  store_->release_lease(kMe);
+  WishOptions options;
+  options.where = root_.string();
+  options.runs = {"bed-*"};
+  const std::string text = problems_of([&] { carry_out(options, Wish::kResume, "goes on", 0.0); });
+  EXPECT_NE(text.find(bed.label + ": its directory " + (root_ / bed.directory).string() +
+                      " is gone; grouser submit " + yaml().string()),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(run("bed").state, State::kHeld);
+}
+
+TEST_F(Cli, ProgressIsOfTheRunsInThePlan) {
+  launch(small_campaign("", "campaign: small\n"));
+  auto views = view_runs(*store_, root_);
+  count_work(*store_, views);
+  ASSERT_EQ(views.size(), 2u);
+  EXPECT_EQ(views[1].run.label, "single");
+  EXPECT_EQ(views[1].chunks, 1);
+  EXPECT_EQ(count_left_out(*store_), 2u);
+}
+
+}  // namespace
+}  // namespace grouser
