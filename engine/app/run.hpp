@@ -58,7 +58,6 @@ class Run {
   void add_series_row();
   bool report_progress(bool now);  // whether it could be written
   void write_slice();
-  std::optional<std::string> wheel_fault() const;
   void event(const std::string& kind, const CheckpointManifest& manifest);
   Outcome outcome(EngineCode code) const;
 

@@ -71,24 +71,22 @@ void Mesh::check_closed(const std::string& name) const {
       auto& [up, down] = passes[{std::min(from, to), std::max(from, to)}];
       ++(from < to ? up : down);
     }
-  std::vector<Problem> problems;
+  std::size_t open = 0;
+  std::string first;
   for (const auto& [edge, count] : passes) {
     if (count.first == 1 && count.second == 1) continue;
-    const auto text_of = [&](int vertex) {
+    if (open++ > 0) continue;
+    for (const int vertex : {edge.first, edge.second}) {
       const Vec3& v = vertices[static_cast<std::size_t>(vertex)];
-      std::string text = format_number(v.x);
-      text.append(" ").append(format_number(v.y)).append(" ").append(format_number(v.z));
-      return text;
-    };
-    problems.push_back({name, 0, 0,
-                        "edge from " + text_of(edge.first) + " to " + text_of(edge.second),
-                        "belongs to " + std::to_string(count.first + count.second) + " facets, " +
-                            std::to_string(count.first) + " of them one way round",
-                        "the surface must be closed and its facets turned alike; mend it in a "
-                        "mesh program (join vertices, fix normals)"});
-    if (problems.size() == 10) break;
+      if (!first.empty()) first.append(" to");
+      for (const double x : {v.x, v.y, v.z}) first.append(" ").append(format_number(x));
+    }
   }
-  if (!problems.empty()) throw ConfigError(problems);
+  if (open == 0) return;
+  throw ConfigError({Problem{
+      name, 0, 0, "", "is not closed at " + std::to_string(open) + " edges, the first from" + first,
+      "every edge must belong to two facets turned alike; mend the surface "
+      "in a mesh program (join vertices, fix normals)"}});
 }
 
 NearestPoint nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {

@@ -109,6 +109,18 @@ void Wheel::advance(double time, double max_overlap) {
   overlap_ = std::max(overlap_, max_overlap);
 }
 
+std::string Wheel::fault() const {
+  const Vec3& axle = world_.body(body_).motion.position;
+  const Vec3& low = world_.settings().low;
+  const Vec3& high = world_.settings().high;
+  if (axle.z - radius() < low.z)
+    return "the wheel has sunk to the floor of the box; use a deeper bed";
+  // In front of and behind its contact with the soil a wheel may reach over the wall's foot.
+  if (axle.x - low.x < 0.25 * radius() || high.x - axle.x < 0.25 * radius())
+    return "the wheel has reached an end wall; use a longer box or less travel";
+  return "";
+}
+
 WheelSample Wheel::take_sample() {
   const BodyMotion& motion = world_.body(body_).motion;
   WheelSample sample;

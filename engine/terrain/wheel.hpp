@@ -51,6 +51,10 @@ class Wheel : public Stateful {
   bool is_driving(double time) const { return time > input_.settle_time; }
   double radius() const { return 0.5 * input_.diameter; }
 
+  /// What makes going on meaningless, or "": wheel and box do not touch each other, so a wheel that
+  /// meets the floor or an end wall would go through it. Local.
+  std::string fault() const;
+
   /// The sample since the last call; begins the next. Local.
   WheelSample take_sample();
 

@@ -161,6 +161,21 @@ TEST(Wheel, TorqueDrivesItForward) {
   EXPECT_LT(drive(input).driven.forward_speed, -0.01);
 }
 
+TEST(Wheel, SaysWhenItMeetsTheBox) {
+  const Case input = toy();
+  World world = make_world(Communicator::alone(), input);
+  Wheel wheel(input, world, kWheelBody);
+  Vec3& axle = world.body(kWheelBody).motion.position;
+  axle = {0.15, 0.08, 0.0701};
+  EXPECT_EQ(wheel.fault(), "");
+  axle.z = 0.0699;
+  EXPECT_NE(wheel.fault().find("floor"), std::string::npos);
+  for (const double x : {0.01, 0.29}) {
+    axle = {x, 0.08, 0.1};
+    EXPECT_NE(wheel.fault().find("end wall"), std::string::npos);
+  }
+}
+
 TEST(Wheel, ItsStateSurvivesACheckpoint) {
   const Case input = toy();
   World world = make_world(Communicator::alone(), input);
