@@ -4,7 +4,7 @@
 #   real_engine.sh SCENARIO GROUSER GROUSER_ENGINE
 # Scenarios: chunks (ranks 1, 2, 4 x chunks 1, 3, 7), kills (engine killed in mid-chunk),
 # manager (engine and manager killed under a whole campaign), full_disk, truncated,
-# broken (overlap over its limit), wall (the wheel meets the end wall), signals (SIGTERM and SIGUSR1),
+# broken (overlap over its limit), signals (SIGTERM and SIGUSR1),
 # snapshots (VTK's own reader opens them).
 set -euo pipefail
 reader=$(realpath -- "$(dirname -- "${BASH_SOURCE[0]}")/read_vtkhdf.py")
@@ -163,16 +163,6 @@ broken() {
   sed -i 's/max_overlap: 0.01 %/max_overlap: 30 %/' soft/case.yaml
   launch 1 soft --bed bed
   expect_same soft "after a breakdown"
-}
-
-wall() {
-  prepare
-  new_run free wheel
-  # Free to roll for 1.2 s, it has 20 cm to go.
-  sed -i 's/drive: towed/drive: torque, torque: 1.0 N m/; s/forward_speed: 0.5/forward_speed: 0.05/' free/case.yaml
-  launch 1 free --bed bed
-  [ "$code" = 30 ] || fail "a wheel at the end wall ended with $code instead of 30"
-  grep -q 'end wall' "$outcome" || fail "the outcome does not say why: $(cat "$outcome")"
 }
 
 signals() {
