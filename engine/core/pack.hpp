@@ -13,24 +13,35 @@
 
 namespace grouser {
 
-/// Four numbers that one instruction works on. Every operation rounds as the same operation on a
-/// double does, so code written for a type `Real` gives the same bits with double and with Pack,
-/// on any processor.
+/// Four numbers side by side, a vector or half a record as it lies in memory. 32 bytes.
+using Quad = double __attribute__((vector_size(32)));
+
+/// Reads or writes four numbers aligned to 32 bytes.
+inline Quad load_quad(const double* from) {
+  using Aliased = double __attribute__((vector_size(32), may_alias));
+  return *reinterpret_cast<const Aliased*>(from);
+}
+inline void store_quad(double* to, Quad quad) {
+  using Aliased = double __attribute__((vector_size(32), may_alias));
+  *reinterpret_cast<Aliased*>(to) = quad;
+}
+
+/// Four numbers that are worked on together. Every operation rounds as the same operation on a
+/// double does, so code written for a type `Real` gives the same bits with double and with Pack, on
+/// any processor.
 class Pack {
  public:
   static constexpr std::size_t kLanes = 4;
-  using Lanes = double __attribute__((vector_size(32)));
-  using Bits = std::int64_t __attribute__((vector_size(32)));
 
   Pack() = default;
   Pack(double all) : lanes_{all, all, all, all} {}
-  explicit Pack(Lanes lanes) : lanes_(lanes) {}
+  explicit Pack(Quad lanes) : lanes_(lanes) {}
 
   /// @param from four numbers, aligned to 32 bytes
-  static Pack load(const double* from) { return Pack(*reinterpret_cast<const Aliased*>(from)); }
-  void store(double* to) const { *reinterpret_cast<Aliased*>(to) = lanes_; }
+  static Pack load(const double* from) { return Pack(load_quad(from)); }
+  void store(double* to) const { store_quad(to, lanes_); }
 
-  Lanes lanes() const { return lanes_; }
+  Quad lanes() const { return lanes_; }
   double operator[](std::size_t lane) const { return lanes_[lane]; }
 
   Pack& operator+=(const Pack& o) {
@@ -52,18 +63,17 @@ class Pack {
   friend Pack operator-(const Pack& a) { return Pack(-a.lanes_); }
 
  private:
-  using Aliased = double __attribute__((vector_size(32), may_alias));
-
-  Lanes lanes_{};
+  Quad lanes_{};
 };
 
 /// A truth per lane.
 class PackMask {
  public:
-  explicit PackMask(Pack::Bits bits) : bits_(bits) {}
+  using Bits = std::int64_t __attribute__((vector_size(32)));
 
-  Pack::Bits bits() const { return bits_; }
-  bool operator[](std::size_t lane) const { return bits_[lane] != 0; }
+  explicit PackMask(Bits bits) : bits_(bits) {}
+
+  Bits bits() const { return bits_; }
   /// Bit k is lane k.
   unsigned to_unsigned() const {
 #ifdef __AVX__
@@ -79,7 +89,7 @@ class PackMask {
   }
 
  private:
-  Pack::Bits bits_;
+  Bits bits_;
 };
 
 inline PackMask operator<(const Pack& a, const Pack& b) { return PackMask(a.lanes() < b.lanes()); }
@@ -92,9 +102,7 @@ inline Pack sqrt(const Pack& a) {
 #ifdef __AVX__
   return Pack(_mm256_sqrt_pd(a.lanes()));
 #else
-  Pack::Lanes root;
-  for (std::size_t lane = 0; lane < Pack::kLanes; ++lane) root[lane] = std::sqrt(a[lane]);
-  return Pack(root);
+  return Pack(Quad{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])});
 #endif
 }
 
@@ -111,16 +119,40 @@ Vec3T<Real> select(const Mask& mask, const Vec3T<Real>& yes, const Vec3T<Real>& 
 inline bool any(const PackMask& mask) { return mask.to_unsigned() != 0; }
 inline bool any(bool mask) { return mask; }
 
-/// Rows to columns: row k becomes lane k of the four results.
-inline void transpose(Pack& a, Pack& b, Pack& c, Pack& d) {
-  const Pack::Lanes ab_even = __builtin_shufflevector(a.lanes(), b.lanes(), 0, 4, 2, 6);
-  const Pack::Lanes ab_odd = __builtin_shufflevector(a.lanes(), b.lanes(), 1, 5, 3, 7);
-  const Pack::Lanes cd_even = __builtin_shufflevector(c.lanes(), d.lanes(), 0, 4, 2, 6);
-  const Pack::Lanes cd_odd = __builtin_shufflevector(c.lanes(), d.lanes(), 1, 5, 3, 7);
-  a = Pack(__builtin_shufflevector(ab_even, cd_even, 0, 1, 4, 5));
-  b = Pack(__builtin_shufflevector(ab_odd, cd_odd, 0, 1, 4, 5));
-  c = Pack(__builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7));
-  d = Pack(__builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7));
+/// Turns four rows of four numbers into four columns. Its own inverse.
+inline void transpose(Quad& a, Quad& b, Quad& c, Quad& d) {
+  const Quad ab_even = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+  const Quad ab_odd = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Quad cd_even = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+  const Quad cd_odd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  a = __builtin_shufflevector(ab_even, cd_even, 0, 1, 4, 5);
+  b = __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 4, 5);
+  c = __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7);
+  d = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
+}
+
+/// The vectors that row(0) ... row(3) hold in their first three numbers.
+template <class Row>
+Vec3T<Pack> columns_of(const Row& row) {
+  Quad a = row(0);
+  Quad b = row(1);
+  Quad c = row(2);
+  Quad d = row(3);
+  transpose(a, b, c, d);
+  return {Pack(a), Pack(b), Pack(c)};
+}
+
+/// Writes each lane's vector, and a zero behind it, to to + lane x stride (aligned to 32 bytes).
+inline void store_rows(const Vec3T<Pack>& v, double* to, std::size_t stride) {
+  Quad a = v.x.lanes();
+  Quad b = v.y.lanes();
+  Quad c = v.z.lanes();
+  Quad d{};
+  transpose(a, b, c, d);
+  store_quad(to, a);
+  store_quad(to + stride, b);
+  store_quad(to + 2 * stride, c);
+  store_quad(to + 3 * stride, d);
 }
 
 }  // namespace grouser

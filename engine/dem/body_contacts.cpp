@@ -2,16 +2,25 @@
 #include "engine/dem/body_contacts.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/dem/history_view.hpp"
 
 namespace grouser {
+namespace {
+
+// Grains closer to a body than this share of the skin are looked at in every step.
+constexpr double kGap = 0.25;
+
+}  // namespace
 
 BodyContacts::BodyContacts(ContactLaw law, RollingLaw rolling)
     : law_(law), rolling_(rolling), history_width_(grouser::history_width(law, rolling)) {}
 
 void BodyContacts::build(const std::vector<Particle>& particles, std::size_t owned,
-                         const Body& body, std::int64_t number, const ContactRecords& records) {
+                         const Body& body, double skin, std::int64_t number,
+                         const ContactRecords& records) {
+  skin_ = skin;
   touches_.clear();
   history_.clear();
   for (std::size_t i = 0; i < owned; ++i)
@@ -30,6 +39,17 @@ void BodyContacts::find_near(const std::vector<Particle>& particles, std::size_t
   for (std::size_t i = 0; i < owned; ++i)
     if (body.search->may_be_near(frame.to_body(particles[i].position), body.turns))
       near_.push_back(static_cast<std::uint32_t>(i));
+  gap_ = 0.0;
+}
+
+void BodyContacts::find_close(const std::vector<Particle>& particles, const Body& body) {
+  const BodyFrame frame(body.motion);
+  gap_ = kGap * skin_;
+  travel_ = 0.0;
+  close_.clear();
+  for (const std::uint32_t i : near_)
+    if (body.search->is_within(frame.to_body(particles[i].position), particles[i].radius + gap_))
+      close_.push_back(i);
 }
 
 void BodyContacts::inherit(std::size_t first, std::size_t last, const MeshSearch& search,
@@ -65,7 +85,7 @@ double BodyContacts::sweep(const Law& law, const Rolling& rolling,
   std::size_t before = 0;
   std::vector<MeshTouch> now;
   std::vector<double> histories;
-  for (const std::uint32_t i : near_) {
+  for (const std::uint32_t i : close_) {
     const Particle& p = particles[i];
     now.clear();
     body.search->touches_of(frame.to_body(p.position), p.radius, now);
@@ -119,6 +139,10 @@ double BodyContacts::add_forces(const std::vector<Particle>& particles, const Bo
                                 std::vector<Vec3>& moment, BodyLoad& load) {
   next_touches_.clear();
   next_history_.clear();
+  // The body has moved since the last step at the velocity it has now.
+  travel_ +=
+      (norm(body.motion.velocity) + std::abs(body.motion.spin) * body.search->rim()) * time_step;
+  if (travel_ * (1.0 + 1e-9) >= gap_) find_close(particles, body);
   const double largest = std::visit(
       [&](const auto& law, const auto& rolling) {
         return sweep(law, rolling, particles, body, time_step, force, moment, load);

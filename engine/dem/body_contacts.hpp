@@ -28,13 +28,17 @@ class BodyContacts {
   BodyContacts(ContactLaw law, RollingLaw rolling);
 
   /// Takes over histories and looks for grains near the body.
+  /// @param skin    what grains near the body are looked for beyond their radius [m]
   /// @param records histories by owned grain with names {body, facet}; `number` is this body's
   void build(const std::vector<Particle>& particles, std::size_t owned, const Body& body,
-             std::int64_t number, const ContactRecords& records);
+             double skin, std::int64_t number, const ContactRecords& records);
 
   /// Looks again for grains that come within the search's reach of the body; only they are looked
   /// at in the steps that follow. Histories stay. Local.
   void find_near(const std::vector<Particle>& particles, std::size_t owned, const Body& body);
+
+  /// Tells that no grain has moved by more than `distance` [m] in a step.
+  void note_travel(double distance) { travel_ += distance; }
 
   /// Adds forces and moments to owned grains and the opposite to `load`.
   /// @return largest overlap over grain radius [1]
@@ -66,8 +70,14 @@ class BodyContacts {
   ContactLaw law_;
   RollingLaw rolling_;
   std::size_t history_width_ = 0;
+  void find_close(const std::vector<Particle>& particles, const Body& body);
+
+  double skin_ = 0.0;
   std::vector<std::uint32_t> near_;
-  std::vector<Touch> touches_;  // of the last step, by grain, then facet
+  std::vector<std::uint32_t> close_;  // of them, those that may touch before grains or body have
+  double gap_ = 0.0;                  // come closer by this [m]; 0 = not known
+  double travel_ = 0.0;               // bound of how much closer they have come since [m]
+  std::vector<Touch> touches_;        // of the last step, by grain, then facet
   std::vector<double> history_;
   std::vector<Touch> next_touches_;
   std::vector<double> next_history_;

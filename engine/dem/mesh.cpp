@@ -133,6 +133,7 @@ NearestPoint nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, co
 
 MeshSearch::MeshSearch(Mesh mesh, double reach)
     : mesh_(std::move(mesh)),
+      reach_(reach),
       low_(bounds_of(mesh_, reach).first),
       high_(bounds_of(mesh_, reach).second),
       grid_(low_, high_, cell_size(mesh_, reach), 1u << 20) {
@@ -198,6 +199,22 @@ void MeshSearch::touches_of(const Vec3& centre, double radius,
     }
     if (is_minimum) touches.push_back(one.touch);
   }
+}
+
+bool MeshSearch::is_within(const Vec3& point, double distance) const {
+  if (point.x < low_.x || point.y < low_.y || point.z < low_.z || point.x > high_.x ||
+      point.y > high_.y || point.z > high_.z)
+    return false;
+  const std::size_t cell = grid_.index(grid_.cell_of(point));
+  return std::any_of(
+      members_.begin() + start_[cell], members_.begin() + start_[cell + 1], [&](int member) {
+        const auto corner = [&](std::size_t k) {
+          return mesh_.vertices[static_cast<std::size_t>(
+              mesh_.facets[static_cast<std::size_t>(member)][k])];
+        };
+        const NearestPoint nearest = nearest_on_triangle(point, corner(0), corner(1), corner(2));
+        return norm2(point - nearest.point) < distance * distance;
+      });
 }
 
 bool MeshSearch::lies_on(const Candidate& candidate, int facet) const {

@@ -65,6 +65,13 @@ class MeshSearch {
   /// @param turns the body turns about its y axis: then the ring it sweeps is tested. Local.
   bool may_be_near(const Vec3& point, bool turns) const;
 
+  /// Whether the surface is closer to a point of the body frame than `distance` (at most `reach`,
+  /// as constructed) [m]. Local.
+  bool is_within(const Vec3& point, double distance) const;
+
+  /// Largest distance of the surface from the body's y axis [m].
+  double rim() const { return ring_ - reach_; }
+
   /// Whether two facets share a vertex. Local.
   bool are_neighbours(int first, int second) const;
 
@@ -76,6 +83,7 @@ class MeshSearch {
   bool lies_on(const Candidate& candidate, int facet) const;
 
   Mesh mesh_;
+  double reach_;
   Vec3 low_;
   Vec3 high_;
   double ring_ = 0.0;  // largest distance from the y axis that is within reach of the surface

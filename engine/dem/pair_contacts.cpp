@@ -32,11 +32,6 @@ constexpr double kSlotSteps = 24.0;
 constexpr double kLeastGap = 0.04;
 constexpr double kLargestGap = 0.5;
 
-// The records of four grains, lane by lane: the four numbers that begin at `member`.
-struct Columns {
-  Pack x, y, z, rest;
-};
-
 }  // namespace
 
 PairContacts::PairContacts(ContactLaw law, RollingLaw rolling)
@@ -184,28 +179,14 @@ double PairContacts::sweep(const Law& law, const Rolling& rolling,
                            std::vector<Vec3>& force, std::vector<Vec3>& moment) {
   using View = HistoryView<Law, Rolling, Pack>;
   const Particle* const grains = particles.data();
-  const auto columns = [&](const std::uint32_t* at, auto member) {
-    Columns c{Pack::load(&(grains[at[0]].*member).x), Pack::load(&(grains[at[1]].*member).x),
-              Pack::load(&(grains[at[2]].*member).x), Pack::load(&(grains[at[3]].*member).x)};
-    transpose(c.x, c.y, c.z, c.rest);
-    return c;
+  const auto vectors = [&](const std::uint32_t* at, auto member) {
+    return columns_of([&](std::size_t k) { return load_quad(&(grains[at[k]].*member).x); });
   };
   // Differences are formed record by record: half the work of turning both.
   const auto difference = [&](const std::uint32_t* a, const std::uint32_t* b, auto member) {
-    const auto row = [&](std::size_t lane) {
-      return Pack::load(&(grains[a[lane]].*member).x) - Pack::load(&(grains[b[lane]].*member).x);
-    };
-    Columns c{row(0), row(1), row(2), row(3)};
-    transpose(c.x, c.y, c.z, c.rest);
-    return Vec3T<Pack>{c.x, c.y, c.z};
-  };
-  const auto put = [](double* to, Vec3T<Pack> v) {
-    Pack rest;
-    transpose(v.x, v.y, v.z, rest);
-    v.x.store(to);
-    v.y.store(to + kResult);
-    v.z.store(to + 2 * kResult);
-    rest.store(to + 3 * kResult);
+    return columns_of([&](std::size_t k) {
+      return load_quad(&(grains[a[k]].*member).x) - load_quad(&(grains[b[k]].*member).x);
+    });
   };
 
   Pack largest;
@@ -246,10 +227,8 @@ double PairContacts::sweep(const Law& law, const Rolling& rolling,
       const Pack half = Pack(0.5) * at.overlap;
       const Pack arm_a = radius_a - half;
       const Pack arm_b = radius_b - half;
-      const Columns a = columns(lower, &Particle::spin);
-      const Columns b = columns(higher, &Particle::spin);
-      const Vec3T<Pack> spin_a{a.x, a.y, a.z};
-      const Vec3T<Pack> spin_b{b.x, b.y, b.z};
+      const Vec3T<Pack> spin_a = vectors(lower, &Particle::spin);
+      const Vec3T<Pack> spin_b = vectors(higher, &Particle::spin);
       at.slip_velocity = velocity - at.normal_velocity * at.normal -
                          cross(arm_a * spin_a + arm_b * spin_b, at.normal);
       const Vec3T<Pack> spin = spin_a - spin_b;
@@ -276,13 +255,15 @@ double PairContacts::sweep(const Law& law, const Rolling& rolling,
           select(touches, Pack::load(stored + c * kLanes), Pack()).store(stored + c * kLanes);
       }
       largest = select(share > largest, share, largest);
-      put(result, on_lower);
-      put(result + 4, turn_a);
-      put(result + 8, turn_b);
+      store_rows(on_lower, result, kResult);
+      store_rows(turn_a, result + 4, kResult);
+      store_rows(turn_b, result + 8, kResult);
     }
     add_up(chunk, force, moment);
   }
-  return std::max({largest[0], largest[1], largest[2], largest[3]});
+  double result = 0.0;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) result = std::max(result, largest[lane]);
+  return result;
 }
 
 // Forces of a chunk's grains: all their slots have been evaluated by now.
@@ -290,21 +271,21 @@ void PairContacts::add_up(std::size_t chunk, std::vector<Vec3>& force,
                           std::vector<Vec3>& moment) const {
   const std::size_t end = std::min((chunk + 1) * kChunk, list_.owned());
   for (std::size_t i = chunk * kChunk; i < end; ++i) {
-    Pack sum;
-    Pack turn;
+    Quad sum{};
+    Quad turn{};
     const auto result_of = [&](std::uint32_t side) {
       return &results_[(sides_[side] & result_mask_) * kResult];
     };
     std::uint32_t at = side_start_[i];
     for (; at < side_split_[i]; ++at) {
       const double* const result = result_of(at);
-      sum -= Pack::load(result);
-      turn += Pack::load(result + 8);
+      sum -= load_quad(result);
+      turn += load_quad(result + 8);
     }
     for (; at < side_start_[i + 1]; ++at) {
       const double* const result = result_of(at);
-      sum += Pack::load(result);
-      turn += Pack::load(result + 4);
+      sum += load_quad(result);
+      turn += load_quad(result + 4);
     }
     force[i] += Vec3{sum[0], sum[1], sum[2]};
     moment[i] += Vec3{turn[0], turn[1], turn[2]};

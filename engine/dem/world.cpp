@@ -108,6 +108,8 @@ World::StepResult World::step(double request) {
   moved_ += totals.maxima[0] * settings_.time_step;
   near_moved_ += totals.maxima[0] * settings_.time_step;
   pairs_.note_travel(totals.maxima[0] * settings_.time_step);
+  for (BodyContacts& contacts : body_contacts_)
+    contacts.note_travel(totals.maxima[0] * settings_.time_step);
   if (moved_ > 0.5 * settings_.skin) moved_ = ranks_.max(displacement());
   must_rebuild_ = moved_ > 0.5 * settings_.skin;
   return result;
@@ -170,8 +172,8 @@ void World::rebuild() {
               particles_);
   pairs_.build(particles_, owned_, settings_.skin, pair_records);
   for (std::size_t b = 0; b < bodies_.size(); ++b)
-    body_contacts_[b].build(particles_, owned_, bodies_[b], static_cast<std::int64_t>(b),
-                            on_bodies);
+    body_contacts_[b].build(particles_, owned_, bodies_[b], settings_.skin,
+                            static_cast<std::int64_t>(b), on_bodies);
   must_rebuild_ = false;
   moved_ = 0.0;
   near_moved_ = 0.0;

@@ -98,8 +98,8 @@ class HertzMindlin {
 };
 
 template <class Real>
-ContactForceT<Real> HertzMindlin::evaluate(const ContactPointT<Real>& at, HistoryT<Real>& history,
-                                           double time_step) const {
+[[gnu::always_inline]] inline ContactForceT<Real> HertzMindlin::evaluate(
+    const ContactPointT<Real>& at, HistoryT<Real>& history, double time_step) const {
   using std::sqrt;
   const Real patch = sqrt(at.radius * at.overlap);
   const Real normal_stiffness = Real(2.0 * young_) * patch;
