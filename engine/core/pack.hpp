@@ -26,6 +26,12 @@ inline void store_quad(double* to, Quad quad) {
   *reinterpret_cast<Aliased*>(to) = quad;
 }
 
+/// Changes the sign of those numbers whose `signs` is -0.0.
+inline Quad flip_signs(Quad a, Quad signs) {
+  using Bits = std::int64_t __attribute__((vector_size(32)));
+  return reinterpret_cast<Quad>(reinterpret_cast<Bits>(a) ^ reinterpret_cast<Bits>(signs));
+}
+
 /// Four numbers that are worked on together. Every operation rounds as the same operation on a
 /// double does, so code written for a type `Real` gives the same bits with double and with Pack, on
 /// any processor.

@@ -54,6 +54,10 @@ void BodyContacts::find_close(const std::vector<Particle>& particles, const Body
 
 void BodyContacts::inherit(std::size_t first, std::size_t last, const MeshSearch& search,
                            const std::vector<MeshTouch>& now, std::vector<double>& histories) {
+  if (now.size() == 1 && last - first == 1 && now[0].facet == touches_[first].facet) {
+    histories.assign(history(first), history(first) + history_width_);
+    return;
+  }
   histories.assign(now.size() * history_width_, 0.0);
   std::vector<bool> is_taken(last - first, false);
   std::vector<bool> is_old(now.size(), false);

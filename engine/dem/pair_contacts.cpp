@@ -48,7 +48,8 @@ void PairContacts::build(const std::vector<Particle>& particles, std::size_t own
   GROUSER_CHECK(records.particles() == owned && records.value_width() == history_width_);
   skin_ = skin;
   list_.build(particles, owned, skin);
-  GROUSER_CHECK(list_.pairs() < std::numeric_limits<std::int32_t>::max());
+  // A slot and its side share 32 bits.
+  GROUSER_CHECK(list_.pairs() < std::numeric_limits<std::int32_t>::max() / 2);
   slot_of_.assign(list_.pairs(), kNoSlot);
   refresh(particles, &records);
 }
@@ -140,22 +141,17 @@ void PairContacts::add_padding(Slots& next) const {
 // Lists each grain's slots by partner id, and finds how far back an adding grain looks.
 void PairContacts::order_sides() {
   side_start_.assign(1, 0);
-  side_split_.clear();
   sides_.clear();
   std::uint32_t window = kLanes;
   for (std::size_t i = 0; i < list_.owned(); ++i) {
     const std::uint32_t end = chunk_end_[i / kChunk];
-    const auto take = [&](std::uint32_t from, std::uint32_t to) {
-      for (std::uint32_t at = from; at < to; ++at) {
-        const std::uint32_t slot = slot_of_[list_.by_partner()[at]];
-        if (slot == kNoSlot) continue;
-        sides_.push_back(slot);
-        window = std::max(window, end - slot);
-      }
-    };
-    take(list_.side_begin(i), list_.side_split(i));
-    side_split_.push_back(static_cast<std::uint32_t>(sides_.size()));
-    take(list_.side_split(i), list_.side_end(i));
+    for (std::uint32_t at = list_.side_begin(i); at < list_.side_end(i); ++at) {
+      const std::uint32_t slot = slot_of_[list_.by_partner()[at]];
+      if (slot == kNoSlot) continue;
+      // With a partner of lower id, this grain is the higher one.
+      sides_.push_back(2 * slot + (at < list_.side_split(i) ? 1 : 0));
+      window = std::max(window, end - slot);
+    }
     side_start_.push_back(static_cast<std::uint32_t>(sides_.size()));
   }
   const std::uint32_t capacity = std::bit_ceil(window);
@@ -244,17 +240,18 @@ double PairContacts::sweep(const Law& law, const Rolling& rolling,
       const Vec3T<Pack> twist = cross(contact.tangential, at.normal);
       Vec3T<Pack> turn_a = arm_a * twist + turning;
       Vec3T<Pack> turn_b = arm_b * twist - turning;
-      Pack share = at.overlap / select(radius_a < radius_b, radius_a, radius_b);
       if (touches_bits != (1u << kLanes) - 1) {
         const Vec3T<Pack> none;
         on_lower = select(touches, on_lower, none);
         turn_a = select(touches, turn_a, none);
         turn_b = select(touches, turn_b, none);
-        share = select(touches, share, Pack());
         for (std::size_t c = 0; c < View::kWidth; ++c)
           select(touches, Pack::load(stored + c * kLanes), Pack()).store(stored + c * kLanes);
       }
-      largest = select(share > largest, share, largest);
+      // A new largest share is rare: the division waits for it.
+      const Pack smaller = select(radius_a < radius_b, radius_a, radius_b);
+      const PackMask is_larger = touches & (at.overlap > largest * smaller);
+      if (any(is_larger)) largest = select(is_larger, at.overlap / smaller, largest);
       store_rows(on_lower, result, kResult);
       store_rows(turn_a, result + 4, kResult);
       store_rows(turn_b, result + 8, kResult);
@@ -269,23 +266,18 @@ double PairContacts::sweep(const Law& law, const Rolling& rolling,
 // Forces of a chunk's grains: all their slots have been evaluated by now.
 void PairContacts::add_up(std::size_t chunk, std::vector<Vec3>& force,
                           std::vector<Vec3>& moment) const {
+  // Turns the force on the lower id into that on the higher: only the sign bits differ.
+  alignas(32) static constexpr double kSign[8] = {0.0, 0.0, 0.0, 0.0, -0.0, -0.0, -0.0, -0.0};
   const std::size_t end = std::min((chunk + 1) * kChunk, list_.owned());
   for (std::size_t i = chunk * kChunk; i < end; ++i) {
     Quad sum{};
     Quad turn{};
-    const auto result_of = [&](std::uint32_t side) {
-      return &results_[(sides_[side] & result_mask_) * kResult];
-    };
-    std::uint32_t at = side_start_[i];
-    for (; at < side_split_[i]; ++at) {
-      const double* const result = result_of(at);
-      sum -= load_quad(result);
-      turn += load_quad(result + 8);
-    }
-    for (; at < side_start_[i + 1]; ++at) {
-      const double* const result = result_of(at);
-      sum += load_quad(result);
-      turn += load_quad(result + 4);
+    for (std::uint32_t at = side_start_[i]; at < side_start_[i + 1]; ++at) {
+      const std::uint32_t side = sides_[at];
+      const std::uint32_t is_higher = side & 1u;
+      const double* const result = &results_[(side >> 1 & result_mask_) * kResult];
+      sum += flip_signs(load_quad(result), load_quad(kSign + 4 * is_higher));
+      turn += load_quad(result + 4 + 4 * is_higher);
     }
     force[i] += Vec3{sum[0], sum[1], sum[2]};
     moment[i] += Vec3{turn[0], turn[1], turn[2]};
@@ -308,7 +300,7 @@ ContactRecords PairContacts::records(const std::vector<Particle>& particles) con
   std::array<double, 16> values{};
   for (std::size_t i = 0; i < list_.owned(); ++i) {
     for (std::uint32_t at = side_start_[i]; at < side_start_[i + 1]; ++at) {
-      const std::uint32_t slot = sides_[at];
+      const std::uint32_t slot = sides_[at] >> 1;
       if (!is_touching(slot)) continue;
       const std::uint32_t lower = slots_.lower[slot];
       const std::int64_t other = particles[lower == i ? slots_.higher[slot] : lower].id;

@@ -85,11 +85,10 @@ class PairContacts {
   std::vector<std::uint32_t> slot_of_;     // of each listed pair, kNoSlot when it has none
   std::vector<std::uint32_t> chunk_end_;   // slots of each chunk of grains end here
   std::vector<std::uint32_t> side_start_;  // of each owned grain's slots by partner id
-  std::vector<std::uint32_t> side_split_;  // where partners with higher ids begin
-  std::vector<std::uint32_t> sides_;
-  double gap_ = 0.0;          // pairs closer than this have slots [m]
-  double travel_ = 0.0;       // bound of a grain's way since the slots were made [m]
-  double last_travel_ = 0.0;  // in the last step [m]
+  std::vector<std::uint32_t> sides_;       // twice the slot, + 1 where the grain has the higher id
+  double gap_ = 0.0;                       // pairs closer than this have slots [m]
+  double travel_ = 0.0;                    // bound of a grain's way since the slots were made [m]
+  double last_travel_ = 0.0;               // in the last step [m]
   // What each slot does in this step, kept only until both its grains have added it up.
   LineVector<double> results_;
   std::uint32_t result_mask_ = 0;
