@@ -16,6 +16,10 @@ for line in open(directory + '/parameters.in'):
 
 solid = O.materials.append(FrictMat(young=p['young'], poisson=p['poisson'], density=p['density'],
                                     frictionAngle=math.atan(p['friction'])))
+# On a wall YADE takes half the grain's radius as the effective one where the others take all of it;
+# E of the pair times sqrt(2) makes up for that.
+wall = O.materials.append(FrictMat(young=p['young'] / (math.sqrt(2) - 1), poisson=p['poisson'],
+                                   density=p['density'], frictionAngle=math.atan(p['friction'])))
 grains = []
 for line in open(directory + '/bed.txt'):
     row = [float(word) for word in line.split()]
@@ -25,7 +29,7 @@ for line in open(directory + '/bed.txt'):
     grains.append(number)
 for axis, place, side in ((0, 0.0, 1), (0, p['length'], -1), (1, 0.0, 1), (1, p['width'], -1),
                           (2, 0.0, 1)):
-    O.bodies.append(utils.wall(place, axis, sense=side, material=solid))
+    O.bodies.append(utils.wall(place, axis, sense=side, material=wall))
 
 O.engines = [
     ForceResetter(),
@@ -46,7 +50,7 @@ print('yade seconds', time.perf_counter() - start)
 with open(state, 'w') as out:
     for number in grains:
         s = O.bodies[number].state
-        out.write(' '.join([str(number)] + [repr(float(x)) for v in (s.pos, s.vel, s.angVel) for x in v]))
-        out.write('\n')
+        row = [float(value) for v in (s.pos, s.vel, s.angVel) for value in v]
+        out.write(' '.join([str(number)] + [repr(value) for value in row]) + '\n')
 sys.stdout.flush()
 os._exit(0)  # YADE's own way out may wait for its threads
