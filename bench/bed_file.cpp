@@ -97,10 +97,6 @@ void write_data_file(const std::filesystem::path& file, const Case& input,
   for (const Particle& p : grains)
     out << p.id + 1 << " 1 " << 2.0 * p.radius << ' ' << input.grains.density << ' ' << p.position.x
         << ' ' << p.position.y << ' ' << p.position.z << '\n';
-  out << "\nVelocities\n\n";
-  for (const Particle& p : grains)
-    out << p.id + 1 << ' ' << p.velocity.x << ' ' << p.velocity.y << ' ' << p.velocity.z << ' '
-        << p.spin.x << ' ' << p.spin.y << ' ' << p.spin.z << '\n';
   if (!out.flush()) throw StorageError("cannot write " + file.string());
 }
 

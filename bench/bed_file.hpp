@@ -21,7 +21,7 @@ std::vector<Particle> read_bed(const std::filesystem::path& file, double density
 /// @throws FormatError unless every grain has its row
 void read_motion(const std::filesystem::path& file, std::vector<Particle>& grains);
 
-/// The same grains for read_data of LAMMPS and LIGGGHTS (atom style sphere), ids from 1.
+/// The same grains, at rest, for read_data of LAMMPS and LIGGGHTS (atom style sphere); ids from 1.
 void write_data_file(const std::filesystem::path& file, const Case& input,
                      const std::vector<Particle>& grains);
 

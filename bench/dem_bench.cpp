@@ -86,9 +86,11 @@ std::vector<Particle> gather(const World& world) {
   return all;
 }
 
-// What all codes start from: the grains, and what the decks of the peers need to know.
-void write_start(const fs::path& directory, const Case& input, const std::vector<Particle>& grains,
+// What all codes start from: the grains, and what the decks of the peers need to know. They start
+// from rest: a single grain still falling somewhere would make every code renew its lists.
+void write_start(const fs::path& directory, const Case& input, std::vector<Particle> grains,
                  double surface) {
+  for (Particle& p : grains) p.velocity = p.spin = Vec3{};
   write_bed(directory / "bed.txt", grains);
   write_data_file(directory / "bed.data", input, grains);
   std::ofstream file(directory / "parameters.in");

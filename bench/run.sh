@@ -24,10 +24,9 @@ mpi() { mpirun --oversubscribe --bind-to none -np "$@"; }
 # hash_of FILE...: names a prepared bed by what it is made from.
 hash_of() { cat -- "$@" | sha256sum | cut -c 1-12; }
 
-# parameters.in is written last: without it a bed is not complete.
+# The engine goes on where it was interrupted, and does nothing when the bed is at rest.
 prepare_bed() {
-  [ ! -f "$bed/parameters.in" ] || return 0
-  echo "bench: preparing the bed in $bed" >&2
+  echo "bench: the bed is in $bed" >&2
   mkdir -p -- "$bed"
   cp -- "$root/bench/dem/bed.yaml" "$bed/case.yaml"
   echo bench >"$bed/fence"
@@ -35,6 +34,7 @@ prepare_bed() {
   "$build/bin/dem_bench" export "$bed"
 }
 
+# parameters.in is written last: without it the bed is not complete.
 prepare_wheel() {
   [ ! -f "$wheel/parameters.in" ] || return 0
   echo "bench: lowering the wheel into the bed in $wheel" >&2
@@ -46,7 +46,7 @@ prepare_wheel() {
 (cd -- "$root" && cmake --preset release -B "$build" -DGROUSER_BENCH=ON) >&2
 cmake --build "$build" --target grouser-engine dem_bench >&2
 bed=$build/data/bed-$(hash_of "$root/bench/dem/bed.yaml")
-wheel=$build/data/wheel-$(hash_of "$root"/bench/dem/{bed,wheel}.yaml "$root/bench/wheel_bed.cpp")
+wheel=$build/data/wheel-$(hash_of "$root"/bench/dem/{bed,wheel}.yaml "$root"/bench/*.cpp)
 prepare_bed
 prepare_wheel
 python3 "$root/bench/dem/compare.py" "$build/bin/dem_bench" "$bed" "$wheel" "$@"

@@ -28,20 +28,20 @@ CASES = {
                 'liggghts': 'liggghts_rolling.in'},
     'wheel': {'grouser': [], 'liggghts': 'liggghts_wheel.in'},
 }
-# How far a peer's bed may be from grouser's after the timed window, relative. All start from the
-# same bed without tangential forces, so that it lets go and falls back onto friction: a wrong
-# stiffness, damping or wall shows in the energy at once (walls with half the effective radius 23 %,
-# two thirds of the damping 10 %). With the same law there remain the integrators (half a step
-# between position and velocity) and what the codes do where the law says little (spring of a
-# shrinking contact, arm of the friction force): up to 1.3 % of the energy and 0.2 % of contacts and
-# overlap were seen; about twice that is allowed.
-SAME_LAW = {'kinetic_energy_J': 0.03, 'coordination': 0.005, 'mean_overlap_m': 0.005}
+# How far a peer's bed may be from grouser's after the timed window, relative. All start from rest
+# in the same places without tangential forces, so that the bed lets go and falls back onto
+# friction: a wrong law shows in the kinetic energy at once. Seen after 200 steps: friction 0.4
+# instead of 0.5 +32 %, Young's modulus 10 % too low +54 %, no rolling resistance +170 %, a wheel
+# that does not turn +7 %. (The limit of the rolling moment does not show: few contacts reach it.)
+# With the same law there remain the integrators (half a step between position and velocity) and
+# what each code does where the law says little (spring of a shrinking contact, arm of the friction
+# force, edges of a mesh): 3.5 % of the energy and 0.2 % of contacts and overlap were seen.
+SAME_LAW = {'kinetic_energy_J': 0.05, 'coordination': 0.005, 'mean_overlap_m': 0.005}
 BOUNDS = {
-    # Damping that grows as d^(1/2) instead of d^(1/4), equal at the mean overlap only.
-    ('plain', 'lammps'): {'kinetic_energy_J': 0.1, 'coordination': 0.01, 'mean_overlap_m': 0.01},
-    # The wheel feeds the energy, over edges and corners of its facets, where each code counts
-    # contacts in its own way: 2.1 % were seen.
-    ('wheel', 'liggghts'): {**SAME_LAW, 'kinetic_energy_J': 0.05},
+    # Damping that grows as d^(1/2) instead of d^(1/4), equal at the mean overlap only: 12 % seen.
+    ('plain', 'lammps'): {'kinetic_energy_J': 0.2, 'coordination': 0.01, 'mean_overlap_m': 0.01},
+    # A rolling spring of constant stiffness, right at the mean overlap only: 7 % seen.
+    ('rolling', 'lammps'): {**SAME_LAW, 'kinetic_energy_J': 0.1},
     # The same program on other ranks: bit for bit the same trajectory.
     **{(case, 'grouser'): dict.fromkeys(SAME_LAW, 0.0) for case in CASES},
 }
@@ -56,6 +56,7 @@ class Bench:
         self.scratch = pathlib.Path(tempfile.mkdtemp(prefix='dem_bench-'))
         self.rates = {}    # (case, code, ranks) -> particle-steps/s of each round
         self.beds = {}     # the same -> what dem_bench measures of the state left
+        self.builds = {}   # the same -> neighbour lists made while timed, where the code tells
         self.faults = {}   # (case, code) -> why there is no rate
         self.memory = []   # bytes per particle of grouser, plain case on one rank
         self.particles = {case: sum(1 for _ in open(directory + '/bed.txt'))
@@ -95,6 +96,9 @@ class Bench:
         self.rates.setdefault((case, code, ranks), []).append(rate)
         if code == 'grouser' and case == 'plain' and ranks == 1:
             self.memory.append(json.loads(last_json(done.stdout))['bytes_per_particle'])
+        if builds := re.findall(r'Neighbor list builds = (\d+)', done.stdout):
+            # The first run is the warm-up, the second the timed one.
+            self.builds[case, code, ranks] = builds[1]
         if (case, code, ranks) not in self.beds:
             self.beds[case, code, ranks] = json.loads(last_json(subprocess.run(
                 [self.program, 'measure', self.directory[case], state], check=True, text=True,
@@ -176,8 +180,8 @@ def print_rates(bench):
 
 def print_agreement(bench):
     """The beds that the codes left, beside grouser's. Returns whether all are within bounds."""
-    print('\n| case | code | ranks | kinetic energy [J] | coordination | mean overlap [m] | |')
-    print('|---|---|---|---|---|---|---|')
+    print('\n| case | code | ranks | kinetic energy [J] | coordination | mean overlap [m] '
+          '| list builds | |\n|---|---|---|---|---|---|---|---|')
     agree = True
     for (case, code, ranks), bed in bench.beds.items():
         own = bench.beds.get((case, 'grouser', 1))
@@ -186,8 +190,10 @@ def print_agreement(bench):
             for name, bound in BOUNDS.get((case, code), SAME_LAW).items()
             if not abs(bed[name] / own[name] - 1) <= bound]
         agree = agree and not off
+        builds = bench.builds.get((case, code, ranks), '-')
         figures = ' | '.join(f'{value:.4g}' for value in bed.values())
-        print(f'| {case} | {code} | {ranks} | {figures} | {"; ".join(off) or "agrees"} |')
+        verdict = '; '.join(off) or 'agrees'
+        print(f'| {case} | {code} | {ranks} | {figures} | {builds} | {verdict} |')
     return agree
 
 

@@ -23,10 +23,7 @@ wall = O.materials.append(FrictMat(young=p['young'] / (math.sqrt(2) - 1), poisso
 grains = []
 for line in open(directory + '/bed.txt'):
     row = [float(word) for word in line.split()]
-    number = O.bodies.append(utils.sphere(row[1:4], row[10], material=solid))
-    O.bodies[number].state.vel = row[4:7]
-    O.bodies[number].state.angVel = row[7:10]
-    grains.append(number)
+    grains.append(O.bodies.append(utils.sphere(row[1:4], row[10], material=solid)))
 for axis, place, side in ((0, 0.0, 1), (0, p['length'], -1), (1, 0.0, 1), (1, p['width'], -1),
                           (2, 0.0, 1)):
     O.bodies.append(utils.wall(place, axis, sense=side, material=wall))

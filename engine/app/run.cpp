@@ -57,7 +57,8 @@ Run::Run(const Communicator& ranks, const EngineOptions& options, const Case& in
       key_(content_key(input.has_wheel ? input : bed_case(input))),
       started_(started),
       world_(make_world(ranks, input)),
-      checkpoints_(ranks, options.run_directory / run_files::kCheckpoints) {
+      checkpoints_(ranks, options.run_directory / run_files::kCheckpoints,
+                   read_file(options.run_directory / run_files::kCase).value_or("")) {
   const double dt = world_.settings().time_step;
   if (input_.has_wheel) {
     wheel_ = std::make_unique<Wheel>(input_, world_, kWheelBody);

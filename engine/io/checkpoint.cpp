@@ -47,8 +47,9 @@ State read_checkpoint(const Communicator& ranks, const fs::path& directory,
   return state;
 }
 
-CheckpointStore::CheckpointStore(const Communicator& ranks, const fs::path& directory)
-    : ranks_(ranks), directory_(directory) {
+CheckpointStore::CheckpointStore(const Communicator& ranks, const fs::path& directory,
+                                 std::string input)
+    : ranks_(ranks), directory_(directory), input_(std::move(input)) {
   on_first_rank(ranks_, [&] { fs::create_directories(directory_); });
 }
 
@@ -72,10 +73,11 @@ CheckpointManifest CheckpointStore::write_data(State state, CheckpointManifest m
   // Asking first keeps a full disk away from the file library, which does not survive one.
   std::string failure = agreed_failure(ranks_, [&] {
     if (ranks_.rank() == 0)
-      check_room(directory_, static_cast<std::uintmax_t>(bytes) + kFileOverhead);
+      check_room(directory_, static_cast<std::uintmax_t>(bytes) + input_.size() + kFileOverhead);
   });
   if (failure.empty())
-    failure = agreed_failure(ranks_, [&] { write_state_file(ranks_, file, state, manifest); });
+    failure =
+        agreed_failure(ranks_, [&] { write_state_file(ranks_, file, state, manifest, input_); });
   if (failure.empty())
     failure = agreed_failure(ranks_, [&] {
       if (ranks_.rank() == 0) sync_path(file);

@@ -21,7 +21,9 @@ namespace grouser {
 class CheckpointStore {
  public:
   /// @param directory the run's checkpoint directory; made when missing
-  CheckpointStore(const Communicator& ranks, const std::filesystem::path& directory);
+  /// @param input     text of the frozen case, stored in every checkpoint for people
+  CheckpointStore(const Communicator& ranks, const std::filesystem::path& directory,
+                  std::string input = "");
 
   /// Writes a checkpoint; `manifest` names case, step and time, the rest is filled in and returned.
   /// @param may_publish asked on rank 0 right before the manifest is written; on false nothing
@@ -60,6 +62,7 @@ class CheckpointStore {
 
   Communicator ranks_;
   std::filesystem::path directory_;
+  std::string input_;
 };
 
 /// Reads the file of `manifest` in `directory` and checks every table's hash.

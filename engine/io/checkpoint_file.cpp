@@ -158,7 +158,8 @@ StateTable read_table(const Communicator& ranks, hid_t file, const std::string& 
 }  // namespace
 
 void write_state_file(const Communicator& ranks, const std::filesystem::path& file,
-                      const State& state, const CheckpointManifest& manifest) {
+                      const State& state, const CheckpointManifest& manifest,
+                      const std::string& input) {
   H5Handle h5 = create_file(ranks, file, false);
   write_number(h5, "format", kFormatVersion);
   write_number(h5, "step", manifest.step);
@@ -170,6 +171,10 @@ void write_state_file(const Communicator& ranks, const std::filesystem::path& fi
     names += (names.empty() ? "" : " ") + table.name;
   }
   write_text(h5, "tables", names);
+  write_rows(ranks, h5, "case",
+             ranks.rank() == 0 ? std::vector<std::uint8_t>(input.begin(), input.end())
+                               : std::vector<std::uint8_t>{},
+             0);
   h5.close("finish " + file.string());
 }
 

@@ -9,9 +9,11 @@
 
 namespace grouser {
 
-/// Writes sorted tables as one HDF5 file. @throws StorageError, on this rank alone. Collective.
+/// Writes sorted tables as one HDF5 file, and beside them rank 0's `input`. @throws StorageError,
+/// on this rank alone. Collective.
 void write_state_file(const Communicator& ranks, const std::filesystem::path& file,
-                      const State& state, const CheckpointManifest& manifest);
+                      const State& state, const CheckpointManifest& manifest,
+                      const std::string& input);
 
 /// Reads a file written by write_state_file; each rank gets its block of keys.
 /// @throws StorageError or FormatError, on this rank alone. Collective.

@@ -130,6 +130,8 @@ truncated() {
   launch 1 torn --bed bed
   grep -q 'damaged checkpoint passed over' torn/log || fail "the torn checkpoint went unnoticed"
   expect_same torn "after a truncated checkpoint"
+  h5dump -d /case -b -o torn/case.copy "$(ls torn/checkpoints/*.h5 | tail -n 1)" >/dev/null
+  cmp torn/case.yaml torn/case.copy || fail "the checkpoint does not hold the frozen case"
 }
 
 full_disk() {
