@@ -3,7 +3,7 @@
 # Builds the benchmarks and runs one of them; see docs/performance/.
 #   bench/run.sh dem [--json FILE] [--quick]
 # dem: the DEM engine beside LAMMPS, LIGGGHTS and YADE on one settled bed. The first call prepares
-# the bed (about ten minutes) and keeps it under build/bench/data.
+# the bed (some ten minutes on two cores) and keeps it under build/bench/data.
 # GROUSER_BENCH_BUILD: another build folder.
 set -euo pipefail
 root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
