@@ -63,6 +63,12 @@ const char* word_of(EngineCode code) {
   return "defect";
 }
 
+std::string run_files::step_digits(std::int64_t step) {
+  char digits[24];
+  std::snprintf(digits, sizeof digits, "%012lld", static_cast<long long>(step));
+  return digits;
+}
+
 std::string run_files::outcome(const std::string& token) { return "outcome-" + token + ".json"; }
 
 std::string to_json(const Outcome& o) {

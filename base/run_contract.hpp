@@ -41,6 +41,7 @@ inline constexpr const char* kSlice = "slice.csv";  ///< grains near the mid-pla
 inline constexpr const char* kCheckpoints = "checkpoints";  ///< directory
 inline constexpr const char* kSnapshots = "snapshots";      ///< directory of VTKHDF files
 inline constexpr const char* kEvents = "events";            ///< directory of event records
+std::string step_digits(std::int64_t step);                 ///< twelve, as in files' names
 std::string outcome(const std::string& token);              ///< outcome-<token>.json
 }  // namespace run_files
 

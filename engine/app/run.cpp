@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <fstream>
 #include <limits>
 
 #include "base/atomic_file.hpp"
@@ -45,6 +46,13 @@ std::int64_t step_at(double time, double time_step) {
   return static_cast<std::int64_t>(std::ceil(time / time_step - 1e-6));
 }
 
+// Rank 0 writes it into checkpoints; the others need none.
+std::string frozen_case(const Communicator& ranks, const fs::path& run_directory) {
+  std::string text;
+  on_first_rank(ranks, [&] { text = read_file(run_directory / run_files::kCase).value_or(""); });
+  return text;
+}
+
 }  // namespace
 
 void signal_stop() { signal_came = true; }
@@ -58,7 +66,7 @@ Run::Run(const Communicator& ranks, const EngineOptions& options, const Case& in
       started_(started),
       world_(make_world(ranks, input)),
       checkpoints_(ranks, options.run_directory / run_files::kCheckpoints,
-                   read_file(options.run_directory / run_files::kCase).value_or("")) {
+                   frozen_case(ranks, options.run_directory)) {
   const double dt = world_.settings().time_step;
   if (input_.has_wheel) {
     wheel_ = std::make_unique<Wheel>(input_, world_, kWheelBody);
@@ -157,8 +165,10 @@ double Run::request() const {
   std::error_code ignored;
   const fs::path stop = options_.run_directory / run_files::kStop;
   if (step_ % 64 != 0 || !fs::exists(stop, ignored)) return kNothing;
-  const auto text = read_file(stop);
-  return text && text->starts_with("signal") ? kSignal : kStop;
+  // One that cannot be read asks all the same; rank 0 must not throw alone.
+  std::string text;
+  std::getline(std::ifstream(stop), text);
+  return text.starts_with("signal") ? kSignal : kStop;
 }
 
 Outcome Run::execute() {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/app/snapshot.hpp"
 
-#include <cstdio>
-
+#include "base/run_contract.hpp"
 #include "engine/io/vtkhdf.hpp"
 
 namespace grouser {
@@ -10,9 +9,7 @@ namespace {
 
 std::filesystem::path file_of(const std::filesystem::path& directory, const std::string& name,
                               std::int64_t step) {
-  char number[24];
-  std::snprintf(number, sizeof number, "%012lld", static_cast<long long>(step));
-  return directory / (name + "_" + number + ".vtkhdf");
+  return directory / (name + "_" + run_files::step_digits(step) + ".vtkhdf");
 }
 
 void push(std::vector<double>& to, const Vec3& v) { to.insert(to.end(), {v.x, v.y, v.z}); }

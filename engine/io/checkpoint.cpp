@@ -59,9 +59,7 @@ CheckpointManifest CheckpointStore::write_data(State state, CheckpointManifest m
   const std::int64_t bytes = ranks_.sum(static_cast<std::int64_t>(bytes_of(state)));
   std::string name;
   if (ranks_.rank() == 0) {
-    char number[24];
-    std::snprintf(number, sizeof number, "%012lld", static_cast<long long>(manifest.step));
-    name = std::string("step_") + number;
+    name = "step_" + run_files::step_digits(manifest.step);
     // What a killed attempt left under the same name is not touched.
     for (int again = 1; fs::exists(directory_ / (name + ".h5")); ++again)
       name = name.substr(0, name.find('-')) + "-" + std::to_string(again);

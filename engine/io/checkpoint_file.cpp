@@ -56,13 +56,7 @@ void read_field(const Communicator& ranks, hid_t group, const StateField& field,
   const hsize_t start[2] = {first, 0};
   const hsize_t count[2] = {rows, width};
   H5Handle memory_space(H5Screate_simple(2, count, nullptr), H5Sclose, "make a data space");
-  if (rows > 0) {
-    h5_check(H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start, nullptr, count, nullptr),
-             "select rows");
-  } else {
-    h5_check(H5Sselect_none(file_space), "select no rows");
-    h5_check(H5Sselect_none(memory_space), "select no rows");
-  }
+  select_rows(file_space, memory_space, start, count);
   h5_agree(ranks,
            H5Dread(dataset, h5_type<Number>(), memory_space, file_space, collective_transfer(ranks),
                    block.data()),

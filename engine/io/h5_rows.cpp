@@ -75,6 +75,16 @@ void write_number(hid_t place, const char* name, std::int64_t value) {
   h5_check(H5Awrite(attribute, H5T_NATIVE_INT64, &value), std::string("write attribute ") + name);
 }
 
+void select_rows(hid_t file_space, hid_t memory_space, const hsize_t* start, const hsize_t* count) {
+  if (count[0] > 0) {
+    h5_check(H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start, nullptr, count, nullptr),
+             "select rows");
+  } else {
+    h5_check(H5Sselect_none(file_space), "select no rows");
+    h5_check(H5Sselect_none(memory_space), "select no rows");
+  }
+}
+
 template <class Number>
 H5Handle write_rows(const Communicator& ranks, hid_t group, const std::string& name,
                     const std::vector<Number>& values, std::size_t width) {
@@ -92,13 +102,7 @@ H5Handle write_rows(const Communicator& ranks, hid_t group, const std::string& n
                    H5Dclose, "make dataset " + name);
   H5Handle memory_space(H5Screate_simple(dimensions, count, nullptr), H5Sclose,
                         "make a data space");
-  if (rows > 0) {
-    h5_check(H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start, nullptr, count, nullptr),
-             "select rows");
-  } else {
-    h5_check(H5Sselect_none(file_space), "select no rows");
-    h5_check(H5Sselect_none(memory_space), "select no rows");
-  }
+  select_rows(file_space, memory_space, start, count);
   if (all == 0) return dataset;  // HDF5 1.10 cannot write nothing together
   const Number nothing{};
   h5_agree(ranks,

@@ -32,6 +32,9 @@ void write_text(hid_t place, const char* name, const std::string& text);
 void write_numbers(hid_t place, const char* name, const std::vector<std::int64_t>& values);
 void write_number(hid_t place, const char* name, std::int64_t value);
 
+/// Selects rows start[0] ... start[0] + count[0] - 1 for a transfer, nothing when there are none.
+void select_rows(hid_t file_space, hid_t memory_space, const hsize_t* start, const hsize_t* count);
+
 /// Writes this rank's rows behind those of the ranks before it, as one dataset of all ranks' rows.
 /// @param values  rows x width on this rank; may be empty
 /// @param width   numbers per row; 0 makes a dataset of one dimension

@@ -55,6 +55,30 @@ TEST(Case, KeyFollowsPhysicsAndNotOutput) {
   EXPECT_EQ(content_key(bed_case(first)), content_key(bed_case(other)));
 }
 
+TEST(Case, KeyLeavesOutWhatDriveAndProfileNeverLookAt) {
+  std::vector<Problem> problems;
+  Case towed = read_case(parse_yaml(kGood, "a"), problems);
+  towed.wheel.drive = "towed";
+  towed.wheel.profile = "drum";
+  Case other = towed;
+  other.wheel.slip = 0.2;
+  other.wheel.torque = 1.0;
+  other.wheel.grousers = 7;
+  other.wheel.stl_file = "w.stl";
+  EXPECT_EQ(content_key(towed), content_key(other));
+  other.wheel.facets = towed.wheel.facets + 1;
+  EXPECT_NE(content_key(towed), content_key(other));
+
+  Case surface = towed;
+  surface.wheel.profile = "stl";
+  surface.wheel.stl_file = "../../surfaces/abc.stl";
+  other = surface;
+  other.wheel.stl_file = "/elsewhere/abc.stl";
+  EXPECT_EQ(content_key(surface), content_key(other));
+  other.wheel.stl_file = "/elsewhere/def.stl";
+  EXPECT_NE(content_key(surface), content_key(other));
+}
+
 TEST(Case, DurationIsSettlingPlusTravelWithItsRamp) {
   std::vector<Problem> problems;
   Case input = read_case(parse_yaml(kGood, "a"), problems);
