@@ -71,6 +71,53 @@ TEST(Invariance, TrajectoryIsTheSameBitForBitOnAnyNumberOfRanks) {
   EXPECT_NE(together.body(1).motion.spin, 20.0);
 }
 
+// A wheel that comes to a grain at rest: by driving, or by a grouser that turns towards it. Nothing
+// but the wheel's own motion can tell the lists that it is near.
+Particle struck_by(double speed, double spin, const Vec3& grain, double skin) {
+  WorldSettings settings = small_settings();
+  settings.gravity = 0.0;
+  settings.skin = skin;
+  World world(Communicator::alone(), settings);
+  WheelCase wheel;
+  wheel.profile = "grousers";
+  wheel.diameter = 0.04;
+  wheel.width = 0.04;
+  wheel.facets = 36;
+  wheel.grousers = 1;
+  wheel.grouser_height = 0.01;
+  wheel.grouser_width = 0.002;
+  const std::size_t body =
+      world.add_body("wheel", wheel_mesh(wheel), kTestSolid, {0.5, 0.6, 0.1}, true);
+  BodyMotion& motion = world.body(body).motion;
+  motion.position = {0.03, 0.05, 0.1};
+  motion.velocity.x = speed;
+  motion.spin = spin;
+  world.add_particle(sphere(0, 4e-3, grain));
+  // Till shortly after the blow, before the grain leaves the box.
+  for (int i = 0, since = 0; i < 4000 && since < 200; ++i) {
+    EXPECT_EQ(world.step().fault, Fault::kNone);
+    if (norm(world.particles()[0].velocity) > 0.0) ++since;
+    motion.position += settings.time_step * motion.velocity;
+    motion.angle += settings.time_step * motion.spin;
+  }
+  return world.particles()[0];
+}
+
+TEST(Invariance, ABodyFindsGrainsAtRestOnItsWay) {
+  const auto expect_struck = [](double speed, double spin, const Vec3& grain) {
+    const Particle thin = struck_by(speed, spin, grain, 0.2e-3);
+    const Particle thick = struck_by(speed, spin, grain, 3e-3);
+    EXPECT_GT(norm(thin.velocity), 0.1);
+    EXPECT_EQ(thin.position, thick.position);
+    EXPECT_EQ(thin.velocity, thick.velocity);
+  };
+  // Not a whole number of skins away, after which the lists are made anew in any case.
+  expect_struck(2.0, 0.0, {0.0665, 0.05, 0.1});
+  // Beside the drum of radius 10 mm, in reach of the grouser's tip alone.
+  expect_struck(0.0, 320.0, {0.03, 0.05, 0.083});
+  expect_struck(0.0, 320.0, {0.03, 0.05, 0.117});
+}
+
 TEST(Invariance, TrajectoryDoesNotDependOnTheSkin) {
   World thin = rain(Communicator(), 0.2e-3, 6);
   World thick = rain(Communicator(), 3e-3, 6);
