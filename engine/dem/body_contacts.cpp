@@ -129,7 +129,8 @@ double BodyContacts::sweep(const Law& law, const Rolling& rolling,
       load.force_x.add(-on_grain.x);
       load.force_y.add(-on_grain.y);
       load.force_z.add(-on_grain.z);
-      load.moment_y.add(-(cross(arm, on_grain).y + turning.y));
+      load.force_moment_y.add(-cross(arm, on_grain).y);
+      load.couple_y.add(-turning.y);
       largest = std::max(largest, at.overlap / p.radius);
       next_touches_.push_back({i, now[t].facet});
     }

@@ -13,11 +13,14 @@
 
 namespace grouser {
 
-/// Force [N] and moment about the body's origin [N m] of the grains on a body; sums that do not
+/// Force [N] and moment about the body's axle [N m] of the grains on a body; sums that do not
 /// depend on ranks.
 struct BodyLoad {
   ExactSum force_x, force_y, force_z;
-  ExactSum moment_y;  ///< about the axle
+  ExactSum force_moment_y;  ///< of the contact forces: force tangential to the circle x distance
+  ExactSum couple_y;        ///< rolling resistance of the grains, which has no force
+
+  double moment_y() const { return force_moment_y.value() + couple_y.value(); }
 };
 
 /// Contacts of owned grains with one body, under the same laws as grain pairs. A grain may touch a

@@ -86,16 +86,16 @@ World::StepResult World::step(double request) {
     overlap =
         std::max(overlap, body_contacts_[b].add_forces(particles_, bodies_[b], settings_.time_step,
                                                        force_, moment_, loads_[b]));
-    for (const ExactSum& sum :
-         {loads_[b].force_x, loads_[b].force_y, loads_[b].force_z, loads_[b].moment_y})
-      totals.sums.push_back(sum);
+    const BodyLoad& load = loads_[b];
+    totals.sums.insert(totals.sums.end(), {load.force_x, load.force_y, load.force_z,
+                                           load.force_moment_y, load.couple_y});
   }
   const double speed = move_owned();
   totals.maxima = {speed, overlap, lost ? 1.0 : 0.0, request};
   ranks_.combine(totals);
   for (std::size_t b = 0; b < bodies_.size(); ++b)
-    loads_[b] = {totals.sums[4 * b], totals.sums[4 * b + 1], totals.sums[4 * b + 2],
-                 totals.sums[4 * b + 3]};
+    loads_[b] = {totals.sums[5 * b], totals.sums[5 * b + 1], totals.sums[5 * b + 2],
+                 totals.sums[5 * b + 3], totals.sums[5 * b + 4]};
 
   StepResult result;
   result.max_overlap = totals.maxima[1];

@@ -90,7 +90,7 @@ void Wheel::advance(double time, double max_overlap) {
   BodyMotion& motion = world_.body(body_).motion;
   const BodyLoad& load = world_.load(body_);
   const double dt = world_.settings().time_step;
-  const double moment = load.moment_y.value();
+  const double moment = load.moment_y();
   motion.velocity.z += dt * (load.force_z.value() - input_.load) * gravity_ / input_.load;
   // Implicit, so that a stiff damper cannot overshoot: dv = -(g/v_s) v dt.
   if (!is_driving(time) && input_.settle_speed > 0.0)
@@ -103,7 +103,7 @@ void Wheel::advance(double time, double max_overlap) {
   pull_ += load.force_x.value();
   side_ += load.force_y.value();
   vertical_ += load.force_z.value();
-  gross_ -= moment / radius();
+  gross_ -= load.force_moment_y.value() / radius();
   forward_ += motion.velocity.x;
   spin_ += motion.spin;
   overlap_ = std::max(overlap_, max_overlap);

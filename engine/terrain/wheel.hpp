@@ -21,7 +21,7 @@ struct WheelSample {
   double pull = 0.0;                   ///< forward force of the soil, drawbar pull [N]
   double vertical_force = 0.0;         ///< upward [N]
   double side_force = 0.0;             ///< along y [N]
-  double gross_tractive_effort = 0.0;  ///< -(moment about the axle)/radius [N]
+  double gross_tractive_effort = 0.0;  ///< of the contact forces, without couples [N]
   double axle_torque = 0.0;            ///< given to the axle, forward positive [N m]
   double max_overlap = 0.0;            ///< largest of the steps, over the radius [1]
 

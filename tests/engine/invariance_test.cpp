@@ -51,7 +51,7 @@ void run(World& world, int steps) {
   for (int i = 0; i < steps; ++i) {
     ASSERT_EQ(world.step().fault, Fault::kNone);
     BodyMotion& motion = world.body(1).motion;
-    motion.spin += world.load(1).moment_y.value() * world.settings().time_step / 1e-4;
+    motion.spin += world.load(1).moment_y() * world.settings().time_step / 1e-4;
     motion.velocity.x += world.load(1).force_x.value() * world.settings().time_step / 2.0;
     motion.position += world.settings().time_step * motion.velocity;
     motion.angle += world.settings().time_step * motion.spin;

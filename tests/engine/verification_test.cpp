@@ -145,7 +145,7 @@ TEST(Collision, WithASpinningDrumKeepsAngularMomentumAboutTheAxle) {
   double largest = 0.0;
   for (int i = 0; i < 20000; ++i) {
     largest = std::max(largest, world.step().max_overlap);
-    given += world.settings().time_step * world.load(wheel).moment_y.value();
+    given += world.settings().time_step * world.load(wheel).moment_y();
     world.body(wheel).motion.angle += world.settings().time_step * 150.0;
   }
   ASSERT_GT(largest, 1e-3);
@@ -277,10 +277,22 @@ TEST(Rolling, ResistanceSlowsARollingSphereAtTheRateOfTheory) {
   double now = 0.0;
   for (; now < spin_up; now += 1e-5) world.step();
   const double first = world.particles()[0].velocity.x;
-  for (; now < spin_up + 0.4; now += 1e-5) world.step();
+  double couple = 0.0;
+  double force_moment = 0.0;
+  int steps = 0;
+  for (; now < spin_up + 0.4; now += 1e-5, ++steps) {
+    const double x = world.particles()[0].position.x;
+    world.step();
+    couple += world.load(0).couple_y.value();
+    force_moment += world.load(0).force_moment_y.value() / x;
+  }
   const double second = world.particles()[0].velocity.x;
   // Moment mu_r R m g on a sphere that rolls without slip: a = mu_r g / (1 + 2/5).
   EXPECT_NEAR((first - second) / 0.4, friction * 9.81 * 5.0 / 7.0, 0.02 * friction * 9.81);
+  // The floor takes the opposite couple, forward, and apart from it the moment of the weight at x.
+  const double weight = world.particles()[0].mass * 9.81;
+  EXPECT_NEAR(couple / steps, friction * 5e-3 * weight, 0.02 * friction * 5e-3 * weight);
+  EXPECT_NEAR(force_moment / steps, weight, 0.02 * weight);
 }
 
 TEST(MeshWall, SlidingAcrossFacetEdgesIsSlidingOnAPlane) {
