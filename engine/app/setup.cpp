@@ -61,6 +61,7 @@ void fill(World& world, const Case& input) {
   const Communicator& ranks = world.ranks();
   const std::int64_t first = first_key(filling.count(), ranks.size(), ranks.rank());
   const std::int64_t last = first_key(filling.count(), ranks.size(), ranks.rank() + 1);
+  world.reserve(static_cast<std::size_t>(last - first));
   for (std::int64_t id = first; id < last; ++id) world.add_particle(filling.particle(id));
 }
 

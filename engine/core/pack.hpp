@@ -32,22 +32,30 @@ inline Quad flip_signs(Quad a, Quad signs) {
   return reinterpret_cast<Quad>(reinterpret_cast<Bits>(a) ^ reinterpret_cast<Bits>(signs));
 }
 
-/// Four numbers that are worked on together. Every operation rounds as the same operation on a
-/// double does, so code written for a type `Real` gives the same bits with double and with Pack, on
-/// any processor.
+/// Numbers that are worked on together: eight where a register holds them (AVX-512), else four.
+/// Every operation rounds as the same operation on a double does, so code written for a type `Real`
+/// gives the same bits with double and with Pack, on any processor.
 class Pack {
  public:
+#ifdef __AVX512DQ__
+  static constexpr std::size_t kLanes = 8;
+#else
   static constexpr std::size_t kLanes = 4;
+#endif
+  using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
+  static constexpr std::size_t kAlignment = sizeof(Lanes);
 
   Pack() = default;
-  Pack(double all) : lanes_{all, all, all, all} {}
-  explicit Pack(Quad lanes) : lanes_(lanes) {}
+  Pack(double all) : lanes_(all - Lanes{}) {}
+  explicit Pack(Lanes lanes) : lanes_(lanes) {}
 
-  /// @param from four numbers, aligned to 32 bytes
-  static Pack load(const double* from) { return Pack(load_quad(from)); }
-  void store(double* to) const { store_quad(to, lanes_); }
+  /// @param from kLanes numbers, aligned to kAlignment bytes
+  static Pack load(const double* from) {
+    return Pack(*reinterpret_cast<const AliasedLanes*>(from));
+  }
+  void store(double* to) const { *reinterpret_cast<AliasedLanes*>(to) = lanes_; }
 
-  Quad lanes() const { return lanes_; }
+  Lanes lanes() const { return lanes_; }
   double operator[](std::size_t lane) const { return lanes_[lane]; }
 
   Pack& operator+=(const Pack& o) {
@@ -69,8 +77,47 @@ class Pack {
   friend Pack operator-(const Pack& a) { return Pack(-a.lanes_); }
 
  private:
-  Quad lanes_{};
+  using AliasedLanes =
+      double __attribute__((vector_size(kLanes * sizeof(double)), may_alias));
+  Lanes lanes_{};
 };
+
+#ifdef __AVX512DQ__
+
+/// A truth per lane.
+class PackMask {
+ public:
+  explicit PackMask(__mmask8 bits) : bits_(bits) {}
+
+  /// Bit k is lane k.
+  unsigned to_unsigned() const { return bits_; }
+  friend PackMask operator!(const PackMask& a) { return PackMask(_knot_mask8(a.bits_)); }
+  friend PackMask operator&(const PackMask& a, const PackMask& b) {
+    return PackMask(_kand_mask8(a.bits_, b.bits_));
+  }
+  /// `yes` where true, else `no`.
+  Pack choose(const Pack& yes, const Pack& no) const {
+    return Pack(_mm512_mask_blend_pd(bits_, no.lanes(), yes.lanes()));
+  }
+
+ private:
+  __mmask8 bits_;
+};
+
+inline PackMask operator<(const Pack& a, const Pack& b) {
+  return PackMask(_mm512_cmp_pd_mask(a.lanes(), b.lanes(), _CMP_LT_OS));
+}
+inline PackMask operator>(const Pack& a, const Pack& b) {
+  return PackMask(_mm512_cmp_pd_mask(a.lanes(), b.lanes(), _CMP_GT_OS));
+}
+inline PackMask operator>=(const Pack& a, const Pack& b) {
+  return PackMask(_mm512_cmp_pd_mask(a.lanes(), b.lanes(), _CMP_GE_OS));
+}
+
+// The forms with a mask, because GCC 12 warns of its own plain ones.
+inline Pack sqrt(const Pack& a) { return Pack(_mm512_maskz_sqrt_pd(0xFF, a.lanes())); }
+
+#else
 
 /// A truth per lane.
 class PackMask {
@@ -79,7 +126,6 @@ class PackMask {
 
   explicit PackMask(Bits bits) : bits_(bits) {}
 
-  Bits bits() const { return bits_; }
   /// Bit k is lane k.
   unsigned to_unsigned() const {
 #ifdef __AVX__
@@ -92,6 +138,10 @@ class PackMask {
   friend PackMask operator!(const PackMask& a) { return PackMask(~a.bits_); }
   friend PackMask operator&(const PackMask& a, const PackMask& b) {
     return PackMask(a.bits_ & b.bits_);
+  }
+  /// `yes` where true, else `no`.
+  Pack choose(const Pack& yes, const Pack& no) const {
+    return Pack(bits_ ? yes.lanes() : no.lanes());
   }
 
  private:
@@ -112,9 +162,11 @@ inline Pack sqrt(const Pack& a) {
 #endif
 }
 
+#endif
+
 /// `yes` where the mask is true, else `no`. The same word for one number.
 inline Pack select(const PackMask& mask, const Pack& yes, const Pack& no) {
-  return Pack(mask.bits() ? yes.lanes() : no.lanes());
+  return mask.choose(yes, no);
 }
 inline double select(bool mask, double yes, double no) { return mask ? yes : no; }
 template <class Mask, class Real>
@@ -125,8 +177,34 @@ Vec3T<Real> select(const Mask& mask, const Vec3T<Real>& yes, const Vec3T<Real>& 
 inline bool any(const PackMask& mask) { return mask.to_unsigned() != 0; }
 inline bool any(bool mask) { return mask; }
 
+#ifdef __AVX512DQ__
+
+/// Turns four rows of four numbers into four columns, in each half. Its own inverse.
+[[gnu::always_inline]] inline void transpose(Pack::Lanes& a, Pack::Lanes& b, Pack::Lanes& c, Pack::Lanes& d) {
+  const Pack::Lanes ab_even = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+  const Pack::Lanes ab_odd = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+  const Pack::Lanes cd_even = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14);
+  const Pack::Lanes cd_odd = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
+  a = __builtin_shufflevector(ab_even, cd_even, 0, 1, 8, 9, 4, 5, 12, 13);
+  b = __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 8, 9, 4, 5, 12, 13);
+  c = __builtin_shufflevector(ab_even, cd_even, 2, 3, 10, 11, 6, 7, 14, 15);
+  d = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+
+/// Row k of a Rows and row k + 4 lie in one register.
+template <class Row>
+[[gnu::always_inline]] inline Pack::Lanes row_of(const Row& row, std::size_t k) {
+  return _mm512_maskz_insertf64x4(0xFF, _mm512_castpd256_pd512(row(k)), row(k + 4), 1);
+}
+[[gnu::always_inline]] inline void store_row(double* to, std::size_t stride, std::size_t k, Pack::Lanes row) {
+  store_quad(to + k * stride, __builtin_shufflevector(row, row, 0, 1, 2, 3));
+  store_quad(to + (k + 4) * stride, __builtin_shufflevector(row, row, 4, 5, 6, 7));
+}
+
+#else
+
 /// Turns four rows of four numbers into four columns. Its own inverse.
-inline void transpose(Quad& a, Quad& b, Quad& c, Quad& d) {
+[[gnu::always_inline]] inline void transpose(Quad& a, Quad& b, Quad& c, Quad& d) {
   const Quad ab_even = __builtin_shufflevector(a, b, 0, 4, 2, 6);
   const Quad ab_odd = __builtin_shufflevector(a, b, 1, 5, 3, 7);
   const Quad cd_even = __builtin_shufflevector(c, d, 0, 4, 2, 6);
@@ -137,28 +215,49 @@ inline void transpose(Quad& a, Quad& b, Quad& c, Quad& d) {
   d = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
 }
 
-/// The vectors that row(0) ... row(3) hold in their first three numbers.
 template <class Row>
-Vec3T<Pack> columns_of(const Row& row) {
-  Quad a = row(0);
-  Quad b = row(1);
-  Quad c = row(2);
-  Quad d = row(3);
+[[gnu::always_inline]] inline Quad row_of(const Row& row, std::size_t k) {
+  return row(k);
+}
+[[gnu::always_inline]] inline void store_row(double* to, std::size_t stride, std::size_t k, Quad row) {
+  store_quad(to + k * stride, row);
+}
+
+#endif
+
+/// The vectors that row(0) ... row(kLanes - 1), each a Quad, hold in their first three numbers.
+template <class Row>
+[[gnu::always_inline]] inline Vec3T<Pack> columns_of(const Row& row) {
+  Pack::Lanes a = row_of(row, 0);
+  Pack::Lanes b = row_of(row, 1);
+  Pack::Lanes c = row_of(row, 2);
+  Pack::Lanes d = row_of(row, 3);
+  transpose(a, b, c, d);
+  return {Pack(a), Pack(b), Pack(c)};
+}
+
+/// The same of row(k) - minus(k).
+template <class Row, class Minus>
+[[gnu::always_inline]] inline Vec3T<Pack> columns_of_difference(const Row& row, const Minus& minus) {
+  Pack::Lanes a = row_of(row, 0) - row_of(minus, 0);
+  Pack::Lanes b = row_of(row, 1) - row_of(minus, 1);
+  Pack::Lanes c = row_of(row, 2) - row_of(minus, 2);
+  Pack::Lanes d = row_of(row, 3) - row_of(minus, 3);
   transpose(a, b, c, d);
   return {Pack(a), Pack(b), Pack(c)};
 }
 
 /// Writes each lane's vector, and a zero behind it, to to + lane x stride (aligned to 32 bytes).
-inline void store_rows(const Vec3T<Pack>& v, double* to, std::size_t stride) {
-  Quad a = v.x.lanes();
-  Quad b = v.y.lanes();
-  Quad c = v.z.lanes();
-  Quad d{};
+[[gnu::always_inline]] inline void store_rows(const Vec3T<Pack>& v, double* to, std::size_t stride) {
+  Pack::Lanes a = v.x.lanes();
+  Pack::Lanes b = v.y.lanes();
+  Pack::Lanes c = v.z.lanes();
+  Pack::Lanes d{};
   transpose(a, b, c, d);
-  store_quad(to, a);
-  store_quad(to + stride, b);
-  store_quad(to + 2 * stride, c);
-  store_quad(to + 3 * stride, d);
+  store_row(to, stride, 0, a);
+  store_row(to, stride, 1, b);
+  store_row(to, stride, 2, c);
+  store_row(to, stride, 3, d);
 }
 
 }  // namespace grouser

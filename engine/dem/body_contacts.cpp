@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "engine/dem/history_view.hpp"
+#include "engine/dem/pair_contacts.hpp"
 
 namespace grouser {
 namespace {
@@ -17,18 +19,47 @@ constexpr double kGap = 0.25;
 BodyContacts::BodyContacts(ContactLaw law, RollingLaw rolling)
     : law_(law), rolling_(rolling), history_width_(grouser::history_width(law, rolling)) {}
 
-void BodyContacts::build(const std::vector<Particle>& particles, std::size_t owned,
-                         const Body& body, double skin, std::int64_t number,
-                         const ContactRecords& records) {
-  skin_ = skin;
+void BodyContacts::keep(std::uint32_t grain, int facet, const double* values) {
+  touches_.push_back({grain, facet});
+  history_.insert(history_.end(), values, values + history_width_);
+}
+
+void BodyContacts::forget() {
   touches_.clear();
   history_.clear();
-  for (std::size_t i = 0; i < owned; ++i)
-    for (std::size_t r = records.begin(i); r < records.end(i); ++r) {
-      if (records.names(r)[0] != number) continue;
-      touches_.push_back({static_cast<std::uint32_t>(i), static_cast<int>(records.names(r)[1])});
-      history_.insert(history_.end(), records.values(r), records.values(r) + history_width_);
-    }
+}
+
+void BodyContacts::renumber(const std::vector<std::uint32_t>& number) {
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < touches_.size(); ++t) {
+    const std::uint32_t grain = number[touches_[t].particle];
+    if (grain == PairContacts::kGone) continue;
+    touches_[kept] = {grain, touches_[t].facet};
+    std::copy_n(history(t), history_width_,
+                history_.begin() + static_cast<std::ptrdiff_t>(kept * history_width_));
+    ++kept;
+  }
+  touches_.resize(kept);
+  history_.resize(kept * history_width_);
+}
+
+void BodyContacts::build(const std::vector<Particle>& particles, std::size_t owned,
+                         const Body& body, double skin) {
+  skin_ = skin;
+  std::vector<std::size_t> order(touches_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(touches_[a].particle, touches_[a].facet) <
+           std::pair(touches_[b].particle, touches_[b].facet);
+  });
+  next_touches_.clear();
+  next_history_.clear();
+  for (const std::size_t t : order) {
+    next_touches_.push_back(touches_[t]);
+    next_history_.insert(next_history_.end(), history(t), history(t) + history_width_);
+  }
+  touches_.swap(next_touches_);
+  history_.swap(next_history_);
   find_near(particles, owned, body);
 }
 
@@ -80,8 +111,7 @@ void BodyContacts::inherit(std::size_t first, std::size_t last, const MeshSearch
 template <class Law, class Rolling>
 double BodyContacts::sweep(const Law& law, const Rolling& rolling,
                            const std::vector<Particle>& particles, const Body& body,
-                           double time_step, std::vector<Vec3>& force, std::vector<Vec3>& moment,
-                           BodyLoad& load) {
+                           double time_step, BodyLoad& load) {
   using View = HistoryView<Law, Rolling>;
   const BodyFrame frame(body.motion);
   const Vec3 body_spin{0.0, body.motion.spin, 0.0};
@@ -124,8 +154,8 @@ double BodyContacts::sweep(const Law& law, const Rolling& rolling,
       View::store(stored, contact_history, rolling_history);
 
       const Vec3 on_grain = result.normal * at.normal + result.tangential;
-      force[i] += on_grain;
-      moment[i] += reach * cross(result.tangential, at.normal) + turning;
+      pushes_.push_back(
+          {i, on_grain, reach * cross(result.tangential, at.normal) + turning});
       load.force_x.add(-on_grain.x);
       load.force_y.add(-on_grain.y);
       load.force_z.add(-on_grain.z);
@@ -139,9 +169,9 @@ double BodyContacts::sweep(const Law& law, const Rolling& rolling,
   return largest;
 }
 
-double BodyContacts::add_forces(const std::vector<Particle>& particles, const Body& body,
-                                double time_step, std::vector<Vec3>& force,
-                                std::vector<Vec3>& moment, BodyLoad& load) {
+double BodyContacts::sweep(const std::vector<Particle>& particles, const Body& body,
+                           double time_step, BodyLoad& load) {
+  pushes_.clear();
   next_touches_.clear();
   next_history_.clear();
   // The body has moved since the last step at the velocity it has now.
@@ -150,7 +180,7 @@ double BodyContacts::add_forces(const std::vector<Particle>& particles, const Bo
   if (travel_ * (1.0 + 1e-9) >= gap_) find_close(particles, body);
   const double largest = std::visit(
       [&](const auto& law, const auto& rolling) {
-        return sweep(law, rolling, particles, body, time_step, force, moment, load);
+        return sweep(law, rolling, particles, body, time_step, load);
       },
       law_, rolling_);
   touches_.swap(next_touches_);

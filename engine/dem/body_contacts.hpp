@@ -8,7 +8,6 @@
 #include "engine/core/particle.hpp"
 #include "engine/core/state_io.hpp"
 #include "engine/dem/body.hpp"
-#include "engine/dem/contact_records.hpp"
 #include "engine/dem/laws/table.hpp"
 
 namespace grouser {
@@ -30,11 +29,21 @@ class BodyContacts {
  public:
   BodyContacts(ContactLaw law, RollingLaw rolling);
 
-  /// Takes over histories and looks for grains near the body.
-  /// @param skin    what grains near the body are looked for beyond their radius [m]
-  /// @param records histories by owned grain with names {body, facet}; `number` is this body's
+  /// Keeps a touch of the owned grain `grain` for the next build. @param values history_width()
+  /// numbers
+  void keep(std::uint32_t grain, int facet, const double* values);
+
+  /// Forgets all touches.
+  void forget();
+
+  /// Gives the touches' grains their new numbers. @param number of each grain owned till now, or
+  /// PairContacts::kGone
+  void renumber(const std::vector<std::uint32_t>& number);
+
+  /// Looks for grains near the body.
+  /// @param skin what grains near the body are looked for beyond their radius [m]
   void build(const std::vector<Particle>& particles, std::size_t owned, const Body& body,
-             double skin, std::int64_t number, const ContactRecords& records);
+             double skin);
 
   /// Looks again for grains that come within the search's reach of the body; only they are looked
   /// at in the steps that follow. Histories stay. Local.
@@ -43,10 +52,19 @@ class BodyContacts {
   /// Tells that no grain has moved by more than `distance` [m] in a step.
   void note_travel(double distance) { travel_ += distance; }
 
-  /// Adds forces and moments to owned grains and the opposite to `load`.
+  /// What a touch does to its grain: force [N] and moment about its centre [N m].
+  struct Push {
+    std::uint32_t particle = 0;
+    Vec3 force;
+    Vec3 moment;
+  };
+
+  /// Evaluates all touches; adds the opposite to `load`.
   /// @return largest overlap over grain radius [1]
-  double add_forces(const std::vector<Particle>& particles, const Body& body, double time_step,
-                    std::vector<Vec3>& force, std::vector<Vec3>& moment, BodyLoad& load);
+  double sweep(const std::vector<Particle>& particles, const Body& body, double time_step,
+               BodyLoad& load);
+  /// Of the last sweep, ordered by grain.
+  const std::vector<Push>& pushes() const { return pushes_; }
 
   std::size_t count() const { return touches_.size(); }
   std::size_t history_width() const { return history_width_; }
@@ -64,8 +82,7 @@ class BodyContacts {
  private:
   template <class Law, class Rolling>
   double sweep(const Law& law, const Rolling& rolling, const std::vector<Particle>& particles,
-               const Body& body, double time_step, std::vector<Vec3>& force,
-               std::vector<Vec3>& moment, BodyLoad& load);
+               const Body& body, double time_step, BodyLoad& load);
   /// Finds the history of a touch among those of the same grain in the step before.
   void inherit(std::size_t first, std::size_t last, const MeshSearch& search,
                const std::vector<MeshTouch>& now, std::vector<double>& histories);
@@ -82,6 +99,7 @@ class BodyContacts {
   double travel_ = 0.0;               // bound of how much closer they have come since [m]
   std::vector<Touch> touches_;        // of the last step, by grain, then facet
   std::vector<double> history_;
+  std::vector<Push> pushes_;
   std::vector<Touch> next_touches_;
   std::vector<double> next_history_;
 };

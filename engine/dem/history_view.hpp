@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstring>
+#include <cstddef>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "engine/dem/laws/table.hpp"
@@ -26,14 +27,40 @@ struct HistoryView {
   static constexpr std::size_t kWidth = kLaw + kRolling;
   static constexpr std::size_t kStride = sizeof(Real) / sizeof(double);
 
-  static void load(const double* from, LawHistory& law, RollingHistory& rolling) {
-    std::memcpy(static_cast<void*>(&law), from, kLaw * sizeof(Real));
-    if constexpr (kRolling > 0)
-      std::memcpy(static_cast<void*>(&rolling), from + kLaw * kStride, kRolling * sizeof(Real));
+  [[gnu::always_inline]] static void load(const double* from, LawHistory& law,
+                                          RollingHistory& rolling) {
+    copy_in<kLaw>(from, &law);
+    copy_in<kRolling>(from + kLaw * kStride, &rolling);
   }
-  static void store(double* to, const LawHistory& law, const RollingHistory& rolling) {
-    std::memcpy(to, &law, kLaw * sizeof(Real));
-    if constexpr (kRolling > 0) std::memcpy(to + kLaw * kStride, &rolling, kRolling * sizeof(Real));
+  [[gnu::always_inline]] static void store(double* to, const LawHistory& law,
+                                           const RollingHistory& rolling) {
+    copy_out<kLaw>(&law, to);
+    copy_out<kRolling>(&rolling, to + kLaw * kStride);
+  }
+
+ private:
+  // Number by number, so that histories stay in registers.
+  template <std::size_t kCount>
+  [[gnu::always_inline]] static void copy_in(const double* from, void* history) {
+    auto* const to = static_cast<Real*>(history);
+    [&]<std::size_t... k>(std::index_sequence<k...>) {
+      ((to[k] = read(from + k * kStride)), ...);
+    }(std::make_index_sequence<kCount>());
+  }
+  template <std::size_t kCount>
+  [[gnu::always_inline]] static void copy_out(const void* history, double* to) {
+    const auto* const from = static_cast<const Real*>(history);
+    [&]<std::size_t... k>(std::index_sequence<k...>) {
+      (write(from[k], to + k * kStride), ...);
+    }(std::make_index_sequence<kCount>());
+  }
+  static Real read(const double* from) {
+    if constexpr (std::is_same_v<Real, double>) return *from;
+    else return Real::load(from);
+  }
+  static void write(const Real& value, double* to) {
+    if constexpr (std::is_same_v<Real, double>) *to = value;
+    else value.store(to);
   }
 };
 

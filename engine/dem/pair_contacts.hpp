@@ -2,14 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "engine/core/aligned.hpp"
 #include "engine/core/particle.hpp"
 #include "engine/core/state_io.hpp"
-#include "engine/dem/contact_records.hpp"
 #include "engine/dem/laws/table.hpp"
-#include "engine/dem/pair_list.hpp"
+#include "engine/dem/pair_histories.hpp"
+#include "engine/dem/pair_slots.hpp"
 
 namespace grouser {
 
@@ -20,78 +21,128 @@ namespace grouser {
 /// depend, to the last bit, on the order of particles in memory, on ranks, on the skin or on when
 /// a list was made.
 ///
-/// Two lists: the PairList, made anew when grains have moved half a skin, and within it the slots,
-/// those pairs that are so close that they may touch within the next steps. Only slots are looked
-/// at in a step, four at a time, and only slots have histories.
+/// Two lists: all pairs that may touch before grains have moved half a skin, and within it the
+/// slots, those pairs that may touch within the next steps. Only slots are looked at in a step,
+/// and only slots have histories. Few grains are much faster than the rest; their listed pairs
+/// always have slots, so that the rest's slots need not reach as far as they do.
 class PairContacts {
  public:
   PairContacts(ContactLaw law, RollingLaw rolling);
 
   void set_laws(ContactLaw law, RollingLaw rolling);  ///< of the same kinds; histories stay
 
-  /// Makes both lists. @param skin as in PairList [m]
+  /// Keeps a history for the next build, under the owned grain `grain`; a pair of two owned grains
+  /// may be kept under either or both. @param values history_width() numbers
+  void keep(std::uint32_t grain, std::int64_t partner, const double* values) {
+    kept_.add(grain, partner, values);
+  }
+  std::size_t history_width() const { return kept_.width(); }
+
+  /// Adds to `out` the histories of all touching pairs with a grain for which is_wanted, under
+  /// that grain. @param particles as of the last build
+  void histories_of(const std::vector<Particle>& particles, const std::vector<bool>& is_wanted,
+                    PairHistories& out) const;
+
+  /// Forgets all lists and histories.
+  void forget();
+
+  static constexpr std::uint32_t kGone = 0xFFFFFFFFu;
+  /// Keeps all histories for the next build under the new numbers of the owned grains and forgets
+  /// the lists. @param number of each grain owned till now, or kGone
+  void renumber(const std::vector<Particle>& particles, const std::vector<std::uint32_t>& number);
+
+  /// Makes both lists with the histories that were kept.
   /// @param particles owned grains first, then ghosts
-  /// @param records   histories by owned grain, to be taken over
-  void build(const std::vector<Particle>& particles, std::size_t owned, double skin,
-             const ContactRecords& records);
+  /// @param skin      pairs closer than the sum of radii + skin are listed [m]
+  void build(const std::vector<Particle>& particles, std::size_t owned, double skin);
 
-  /// Adds the forces [N] and moments [N m] of all contacts to those of the owned grains.
+  /// Takes over a few neighbouring owned grains first ... last-1 whose pair forces [N] and moments
+  /// [N m] are complete, four numbers each. No other grain needs their positions any more in this
+  /// step, so they may be moved.
+  using Finish = std::function<void(std::size_t first, std::size_t last, const double* forces,
+                                    const double* moments)>;
+
+  /// Evaluates all contacts and hands over all owned grains.
   /// @return largest overlap over the smaller radius of the pair [1]
-  double add_forces(const std::vector<Particle>& particles, double time_step,
-                    std::vector<Vec3>& force, std::vector<Vec3>& moment);
+  double sweep(const std::vector<Particle>& particles, double time_step, const Finish& finish);
 
-  /// Tells that no grain, ghosts included, has moved by more than `distance` [m] in a step.
-  void note_travel(double distance);
+  /// Whether a grain was much faster than the mean when the slots were made.
+  bool is_fast(std::size_t grain) const { return is_fast_[grain] != 0; }
 
-  /// Histories of the touching contacts of the owned grains, listed under each of the two that is
-  /// owned; name = partner's id.
-  ContactRecords records(const std::vector<Particle>& particles) const;
-  ContactRecords empty_records() const { return ContactRecords(1, history_width_); }
+  /// Tells how fast grains were in the last step, on all ranks [m s-1]: the fastest of those that
+  /// are not is_fast, and the mean over all grains of |vx| + |vy| + |vz|.
+  void note_speeds(double slow, double mean, double time_step);
+
+  /// Calls visit(grain, partner id, values) for each touching contact whose lower id is owned.
+  template <class Visit>
+  void each_history(const std::vector<Particle>& particles, const Visit& visit) const;
   std::vector<StateField> history_fields() const;
 
   /// Contacts that touch, each counted on the rank that owns its lower id.
   std::int64_t count() const;
 
  private:
-  // Pairs that a step looks at, in the order of the list; padded with pairs of nothing so that
-  // the slots of a chunk of grains fill whole packs.
-  struct Slots {
-    std::vector<std::uint32_t> lower;    // grain with the lower id
-    std::vector<std::uint32_t> higher;   // grain with the higher id
-    LineVector<double> shape;            // packs of kShape numbers: what does not change
-    LineVector<double> history;          // packs of history_width_ numbers
-    std::vector<std::uint8_t> touching;  // of each pack, bit k = lane k
+  // Neighbouring grains with what is listed under them: one bucket of PairHistories.
+  struct Block {
+    explicit Block(std::size_t history_width) : slots(history_width) {}
+    std::vector<std::uint32_t> start;    // of each grain's pairs in `partner`
+    std::vector<std::uint32_t> partner;  // the second grain of each pair
+    PairSlots slots;                     // in the order of pairs
+    std::vector<std::uint32_t> chunk_end;
+    std::uint32_t first_slot = 0;  // among all slots of the rank
   };
 
-  void refresh(const std::vector<Particle>& particles, const ContactRecords* records);
-  void add_slot(const std::vector<Particle>& particles, std::size_t i, std::uint32_t pair,
-                const ContactRecords* records, Slots& next) const;
-  void add_padding(Slots& next) const;
-  void order_sides();
-  bool is_touching(std::uint32_t slot) const;
-  void history_of(const Slots& slots, std::uint32_t slot, double* values) const;
+  std::size_t last_of(std::size_t block) const;
+  const double* kept(const std::vector<Particle>& particles, std::size_t i, std::size_t j) const;
+  void mark_fast(const std::vector<Particle>& particles);
+  bool needs_slot(const std::vector<Particle>& particles, std::size_t i, std::size_t j) const;
+  template <class History>
+  void make_slots(const std::vector<Particle>& particles, std::size_t block, const History& of);
+  void refresh(const std::vector<Particle>& particles);
+  void order_sides(const std::vector<Particle>& particles);
 
   template <class Law, class Rolling>
   double sweep(const Law& law, const Rolling& rolling, const std::vector<Particle>& particles,
-               double time_step, std::vector<Vec3>& force, std::vector<Vec3>& moment);
-  void add_up(std::size_t chunk, std::vector<Vec3>& force, std::vector<Vec3>& moment) const;
+               double time_step, const Finish& finish);
+  void add_up(std::size_t first, std::size_t last);
 
   ContactLaw law_;
   RollingLaw rolling_;
-  std::size_t history_width_ = 0;
-  PairList list_;
+  std::size_t owned_ = 0;
   double skin_ = 0.0;
-  Slots slots_;
-  std::vector<std::uint32_t> slot_of_;     // of each listed pair, kNoSlot when it has none
-  std::vector<std::uint32_t> chunk_end_;   // slots of each chunk of grains end here
+  std::vector<Block> blocks_;
+  PairHistories kept_;
+  PairSlots scratch_;
+  std::vector<std::uint8_t> is_fast_;
   std::vector<std::uint32_t> side_start_;  // of each owned grain's slots by partner id
   std::vector<std::uint32_t> sides_;       // twice the slot, + 1 where the grain has the higher id
-  double gap_ = 0.0;                       // pairs closer than this have slots [m]
-  double travel_ = 0.0;                    // bound of a grain's way since the slots were made [m]
-  double last_travel_ = 0.0;               // in the last step [m]
+  std::vector<std::uint8_t> by_count_;     // grains of each chunk by their number of slots
+  double gap_ = 0.0;                       // slow pairs closer than this have slots [m]
+  double travel_ = 0.0;                    // bound of a slow grain's way since then [m]
+  double slow_speed_ = 0.0;
+  double fast_speed_ = 0.0;  // from here on a grain is fast
+  double time_step_ = 0.0;
   // What each slot does in this step, kept only until both its grains have added it up.
   LineVector<double> results_;
   std::uint32_t result_mask_ = 0;
+  LineVector<double> forces_;  // of the grains being added up
+  LineVector<double> moments_;
 };
+
+template <class Visit>
+void PairContacts::each_history(const std::vector<Particle>& particles, const Visit& visit) const {
+  // Before the first build histories wait under both grains.
+  kept_.each([&](std::uint32_t grain, std::int64_t partner, const double* values) {
+    if (particles[grain].id < partner) visit(grain, partner, values);
+  });
+  std::vector<double> values(history_width());
+  for (const Block& block : blocks_)
+    for (std::size_t slot = 0; slot < block.slots.size(); ++slot) {
+      const std::uint32_t lower = block.slots.lower(slot);
+      if (!block.slots.is_touching(slot) || lower >= owned_) continue;
+      block.slots.history_of(slot, values.data());
+      visit(lower, particles[block.slots.higher(slot)].id, values.data());
+    }
+}
 
 }  // namespace grouser

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -45,6 +45,9 @@ class World : public Stateful {
   /// all ranks. Local.
   void add_particle(const Particle& particle);
 
+  /// Makes room for `count` grains on this rank, so that adding them does not move memory. Local.
+  void reserve(std::size_t count);
+
   /// Adds a body; the same on every rank, before the first step. @return its number. Local.
   std::size_t add_body(const std::string& name, Mesh mesh, const Solid& solid,
                        const Surface& surface, bool turns);
@@ -87,11 +90,44 @@ class World : public Stateful {
   void load_state(const State& state) override;
 
  private:
+  // A grain that comes from another rank, with its histories.
+  struct Arrival {
+    struct Pair {
+      std::int64_t partner = 0;
+      std::vector<double> history;
+    };
+    struct Touch {
+      std::size_t body = 0;
+      int facet = 0;
+      std::vector<double> history;
+    };
+    Particle particle;
+    Vec3 origin;
+    std::vector<Pair> pairs;
+    std::vector<Touch> touches;
+  };
+  // A position to single precision: enough to tell how far a grain has moved since.
+  struct Place {
+    float x;
+    float y;
+    float z;
+    Vec3 position() const { return {x, y, z}; }
+  };
+  // What is found out while grains move.
+  struct Motion {
+    double fastest2 = 0.0;               // largest squared speed
+    double slow2 = 0.0;                  // of those that are not fast
+    double sum = 0.0;                    // of |vx| + |vy| + |vz|
+    std::vector<std::size_t> next_push;  // of each body
+  };
+
   void rebuild();
-  void migrate(ContactRecords& pair_records, ContactRecords& body_records);
-  void sort_owned(ContactRecords& pair_records, ContactRecords& body_records);
-  ContactRecords body_records() const;
-  double move_owned();
+  std::vector<Arrival> exchange_leaving(std::vector<bool>& leaves) const;
+  std::vector<std::uint32_t> numbers_by_cell(const std::vector<bool>& leaves,
+                                             const std::vector<Arrival>& arrivals) const;
+  void put_in_order(std::vector<std::uint32_t> number);
+  void move(std::size_t first, std::size_t last, const double* forces, const double* moments,
+            Motion& motion);
   double displacement() const;
   bool has_lost_particle() const;
   void load_particles(const State& state);
@@ -108,12 +144,9 @@ class World : public Stateful {
   std::vector<Body> bodies_;
   std::vector<BodyContacts> body_contacts_;
   std::vector<BodyLoad> loads_;
-  std::vector<Vec3> force_;
-  std::vector<Vec3> moment_;
-  // Histories that wait for the first list after load_state.
-  std::optional<ContactRecords> waiting_pairs_;
-  std::optional<ContactRecords> waiting_bodies_;
-  std::vector<Vec3> built_at_;  // positions when the list was made
+  std::int64_t count_ = 0;       // of grains on all ranks
+  std::vector<Place> built_at_;  // where grains were when the list was made
+  double rounding_ = 0.0;  // bound of what a Place leaves out [m]
   bool must_rebuild_ = true;
   double moved_ = 0.0;       // bound of grain displacement since then [m]
   double near_moved_ = 0.0;  // bound of grain against body displacement since find_near [m]

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <map>
 
 #include "base/check.hpp"
 #include "base/errors.hpp"
@@ -60,26 +59,22 @@ void World::save_state(State& state) const {
   touches.name = "body_contacts";
   touches.key_count = total;
   touches.real_fields = contacts.real_fields;
-  // Before the first step histories still wait where load_state left them.
-  const ContactRecords pair_records = waiting_pairs_ ? *waiting_pairs_ : pairs_.records(particles_);
-  const ContactRecords on_bodies = waiting_bodies_ ? *waiting_bodies_ : body_records();
-  for (std::size_t i = 0; i < owned_; ++i) {
-    const std::int64_t id = particles_[i].id;
-    if (i < pair_records.particles())
-      for (std::size_t r = pair_records.begin(i); r < pair_records.end(i); ++r) {
-        const std::int64_t other = pair_records.names(r)[0];
-        if (other < id) continue;
-        contacts.integers.insert(contacts.integers.end(), {id, other});
-        contacts.reals.insert(contacts.reals.end(), pair_records.values(r),
-                              pair_records.values(r) + pair_records.value_width());
-      }
-    if (i < on_bodies.particles())
-      for (std::size_t r = on_bodies.begin(i); r < on_bodies.end(i); ++r) {
-        const std::int64_t place = (on_bodies.names(r)[0] << kFacetBits) | on_bodies.names(r)[1];
-        touches.integers.insert(touches.integers.end(), {id, place});
-        touches.reals.insert(touches.reals.end(), on_bodies.values(r),
-                             on_bodies.values(r) + on_bodies.value_width());
-      }
+  pairs_.each_history(particles_,
+                      [&](std::uint32_t grain, std::int64_t other, const double* values) {
+                        contacts.integers.insert(contacts.integers.end(),
+                                                 {particles_[grain].id, other});
+                        contacts.reals.insert(contacts.reals.end(), values,
+                                              values + pairs_.history_width());
+                      });
+  for (std::size_t b = 0; b < body_contacts_.size(); ++b) {
+    const BodyContacts& on_body = body_contacts_[b];
+    for (std::size_t t = 0; t < on_body.count(); ++t) {
+      const BodyContacts::Touch& touch = on_body.touches()[t];
+      const std::int64_t place = (static_cast<std::int64_t>(b) << kFacetBits) | touch.facet;
+      touches.integers.insert(touches.integers.end(), {particles_[touch.particle].id, place});
+      touches.reals.insert(touches.reals.end(), on_body.history(t),
+                           on_body.history(t) + on_body.history_width());
+    }
   }
 
   StateTable bodies = body_table();
@@ -113,8 +108,6 @@ void World::load_particles(const State& state) {
     origins_.push_back(pull(from));
   }
   owned_ = particles_.size();
-  built_at_.clear();
-  force_.clear();
   must_rebuild_ = true;
 }
 
@@ -135,25 +128,25 @@ void World::load_contacts(const State& state) {
   StateTable touches = table_of(state, "body_contacts");
   sort_rows(ranks_, touches);
 
-  waiting_pairs_ = pairs_.empty_records();
-  waiting_bodies_ = ContactRecords(2, touches.real_width());
   // Fields are the same on every rank, so this is decided alike everywhere.
-  if (waiting_pairs_->value_width() != rw || touches.real_width() != rw)
+  if (pairs_.history_width() != rw || touches.real_width() != rw)
     throw FormatError("the checkpoint was written with other contact laws");
+  pairs_.forget();
+  for (BodyContacts& on_body : body_contacts_) on_body.forget();
   std::size_t pair = 0;
   std::size_t touch = 0;
-  for (std::size_t i = 0; i < owned_; ++i) {  // rows and grains are both sorted by id here
+  for (std::uint32_t i = 0; i < owned_; ++i) {  // rows and grains are both sorted by id here
     const std::int64_t id = particles_[i].id;
     for (; pair < both.rows() && both.integers[pair * 2] == id; ++pair)
-      waiting_pairs_->add(&both.integers[pair * 2 + 1], both.reals.data() + pair * rw);
-    waiting_pairs_->close_particle();
+      pairs_.keep(i, both.integers[pair * 2 + 1], both.reals.data() + pair * rw);
     for (; touch < touches.rows() && touches.integers[touch * 2] == id; ++touch) {
       const std::int64_t place = touches.integers[touch * 2 + 1];
-      const std::int64_t names[2] = {place >> kFacetBits,
-                                     place & ((std::int64_t{1} << kFacetBits) - 1)};
-      waiting_bodies_->add(names, touches.reals.data() + touch * rw);
+      const auto body = static_cast<std::size_t>(place >> kFacetBits);
+      // A body that the case does not have is noticed where bodies are loaded.
+      if (body < body_contacts_.size())
+        body_contacts_[body].keep(i, static_cast<int>(place & 0xFFFFFFFF),
+                                  touches.reals.data() + touch * rw);
     }
-    waiting_bodies_->close_particle();
   }
   const bool is_left_over = pair != both.rows() || touch != touches.rows();
   if (ranks_.max(std::int64_t{is_left_over ? 1 : 0}) != 0)

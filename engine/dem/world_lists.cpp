@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <utility>
+
+#include "engine/dem/cell_grid.hpp"
+#include "engine/dem/world.hpp"
+
+namespace grouser {
+namespace {
+
+constexpr std::uint32_t kGone = PairContacts::kGone;
+
+}  // namespace
+
+void World::rebuild() {
+  std::vector<bool> leaves(owned_, false);
+  std::vector<Arrival> arrivals;
+  if (ranks_.size() > 1) arrivals = exchange_leaving(leaves);
+  std::vector<std::uint32_t> number = numbers_by_cell(leaves, arrivals);
+  pairs_.renumber(particles_, number);  // while partners that are ghosts can still be named
+  for (BodyContacts& contacts : body_contacts_) contacts.renumber(number);
+  particles_.resize(owned_);
+  for (std::size_t a = 0; a < arrivals.size(); ++a) {
+    const std::uint32_t at = number[owned_ + a];
+    for (const Arrival::Pair& pair : arrivals[a].pairs)
+      pairs_.keep(at, pair.partner, pair.history.data());
+    for (const Arrival::Touch& touch : arrivals[a].touches)
+      body_contacts_[touch.body].keep(at, touch.facet, touch.history.data());
+    particles_.push_back(arrivals[a].particle);
+    origins_.push_back(arrivals[a].origin);
+  }
+  put_in_order(std::move(number));
+
+  count_ = particle_count();
+  built_at_.clear();
+  built_at_.reserve(owned_);
+  for (std::size_t i = 0; i < owned_; ++i) {
+    const Vec3& at = particles_[i].position;
+    built_at_.push_back(
+        {static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z)});
+  }
+  // A hair more than the list's reach, so that rounding at a column's edge loses no pair.
+  halo_.build(ranks_, columns_, (2.0 * settings_.largest_radius + settings_.skin) * (1.0 + 1e-9),
+              particles_);
+  pairs_.build(particles_, owned_, settings_.skin);
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    body_contacts_[b].build(particles_, owned_, bodies_[b], settings_.skin);
+  must_rebuild_ = false;
+  moved_ = 0.0;
+  near_moved_ = 0.0;
+}
+
+// Sends grains that have left this rank's column to their owners, with copies of their histories.
+std::vector<World::Arrival> World::exchange_leaving(std::vector<bool>& leaves) const {
+  for (std::size_t i = 0; i < owned_; ++i)
+    leaves[i] = columns_.owner_of(particles_[i].position) != ranks_.rank();
+  PairHistories pairs(pairs_.history_width());
+  pairs_.histories_of(particles_, leaves, pairs);
+  pairs.sort();
+
+  std::vector<Bytes> out(static_cast<std::size_t>(ranks_.size()));
+  std::vector<std::size_t> next(body_contacts_.size(), 0);
+  for (std::uint32_t i = 0; i < owned_; ++i) {
+    if (!leaves[i]) continue;
+    Bytes& to = out[static_cast<std::size_t>(columns_.owner_of(particles_[i].position))];
+    append_bytes(to, &particles_[i], 1);
+    append_bytes(to, &origins_[i], 1);
+    std::int64_t count = 0;
+    pairs.each_of(i, [&](std::int64_t, const double*) { ++count; });
+    append_bytes(to, &count, 1);
+    pairs.each_of(i, [&](std::int64_t partner, const double* values) {
+      append_bytes(to, &partner, 1);
+      append_bytes(to, values, pairs.width());
+    });
+    for (std::size_t b = 0; b < body_contacts_.size(); ++b) {
+      const BodyContacts& contacts = body_contacts_[b];
+      const auto& touches = contacts.touches();
+      while (next[b] < touches.size() && touches[next[b]].particle < i) ++next[b];
+      const std::size_t first = next[b];
+      while (next[b] < touches.size() && touches[next[b]].particle == i) ++next[b];
+      count = static_cast<std::int64_t>(next[b] - first);
+      append_bytes(to, &count, 1);
+      for (std::size_t t = first; t < next[b]; ++t) {
+        const std::int64_t facet = touches[t].facet;
+        append_bytes(to, &facet, 1);
+        append_bytes(to, contacts.history(t), contacts.history_width());
+      }
+    }
+  }
+
+  std::vector<Arrival> arrivals;
+  for (const Bytes& message : ranks_.exchange_all(out)) {
+    ByteReader reader(message);
+    while (!reader.empty()) {
+      Arrival& arrival = arrivals.emplace_back();
+      reader.take(&arrival.particle, 1);
+      reader.take(&arrival.origin, 1);
+      std::int64_t count = 0;
+      reader.take(&count, 1);
+      for (; count > 0; --count) {
+        Arrival::Pair& pair = arrival.pairs.emplace_back();
+        reader.take(&pair.partner, 1);
+        pair.history.resize(pairs.width());
+        reader.take(pair.history.data(), pairs.width());
+      }
+      for (std::size_t b = 0; b < body_contacts_.size(); ++b) {
+        reader.take(&count, 1);
+        for (; count > 0; --count) {
+          std::int64_t facet = 0;
+          reader.take(&facet, 1);
+          Arrival::Touch& touch = arrival.touches.emplace_back();
+          touch.body = b;
+          touch.facet = static_cast<int>(facet);
+          touch.history.resize(body_contacts_[b].history_width());
+          reader.take(touch.history.data(), touch.history.size());
+        }
+      }
+    }
+  }
+  return arrivals;
+}
+
+// New numbers of the grains owned till now, kGone for those that leave, then of the arrivals: cell
+// by cell, so that neighbours in space are neighbours in memory, and by id within a cell.
+std::vector<std::uint32_t> World::numbers_by_cell(const std::vector<bool>& leaves,
+                                                  const std::vector<Arrival>& arrivals) const {
+  const std::size_t all = owned_ + arrivals.size();
+  const auto grain = [&](std::size_t i) -> const Particle& {
+    return i < owned_ ? particles_[i] : arrivals[i - owned_].particle;
+  };
+  const auto stays = [&](std::size_t i) { return i >= owned_ || !leaves[i]; };
+  Vec3 low = settings_.high;
+  Vec3 high = settings_.low;
+  for (std::size_t i = 0; i < all; ++i) {
+    const Vec3& at = grain(i).position;
+    low = {std::min(low.x, at.x), std::min(low.y, at.y), std::min(low.z, at.z)};
+    high = {std::max(high.x, at.x), std::max(high.y, at.y), std::max(high.z, at.z)};
+  }
+  const CellGrid grid(low, high, 2.0 * settings_.largest_radius + settings_.skin, 2 * all + 64);
+  const auto cell_of = [&](std::size_t i) { return grid.index(grid.cell_of(grain(i).position)); };
+  // Counted two places up, so that filling a cell moves its mark to where the next one begins.
+  std::vector<std::uint32_t> first(grid.cells() + 2, 0);
+  std::size_t staying = 0;
+  for (std::size_t i = 0; i < all; ++i) {
+    if (!stays(i)) continue;
+    ++first[cell_of(i) + 2];
+    ++staying;
+  }
+  for (std::size_t c = 2; c < first.size(); ++c) first[c] += first[c - 1];
+  std::vector<std::uint32_t> members(staying);
+  for (std::size_t i = 0; i < all; ++i)
+    if (stays(i)) members[first[cell_of(i) + 1]++] = static_cast<std::uint32_t>(i);
+  for (std::size_t c = 0; c + 1 < first.size(); ++c)
+    std::sort(members.begin() + first[c], members.begin() + first[c + 1],
+              [&](std::uint32_t a, std::uint32_t b) { return grain(a).id < grain(b).id; });
+  std::vector<std::uint32_t> number(all, kGone);
+  for (std::uint32_t k = 0; k < staying; ++k) number[members[k]] = k;
+  return number;
+}
+
+// Puts grains where their numbers say and drops those that have gone.
+void World::put_in_order(std::vector<std::uint32_t> number) {
+  const auto gone = std::count(number.begin(), number.end(), kGone);
+  auto behind = static_cast<std::uint32_t>(number.size() - static_cast<std::size_t>(gone));
+  owned_ = behind;
+  for (std::uint32_t& to : number)
+    if (to == kGone) to = behind++;
+  for (std::uint32_t i = 0; i < number.size(); ++i)
+    while (number[i] != i) {
+      const std::uint32_t to = number[i];
+      std::swap(particles_[i], particles_[to]);
+      std::swap(origins_[i], origins_[to]);
+      std::swap(number[i], number[to]);
+    }
+  particles_.resize(owned_);
+  origins_.resize(owned_);
+}
+
+}  // namespace grouser
