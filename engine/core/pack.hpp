@@ -77,8 +77,7 @@ class Pack {
   friend Pack operator-(const Pack& a) { return Pack(-a.lanes_); }
 
  private:
-  using AliasedLanes =
-      double __attribute__((vector_size(kLanes * sizeof(double)), may_alias));
+  using AliasedLanes = double __attribute__((vector_size(kLanes * sizeof(double)), may_alias));
   Lanes lanes_{};
 };
 
@@ -87,6 +86,7 @@ class Pack {
 /// A truth per lane.
 class PackMask {
  public:
+  PackMask() = default;
   explicit PackMask(__mmask8 bits) : bits_(bits) {}
 
   /// Bit k is lane k.
@@ -101,7 +101,7 @@ class PackMask {
   }
 
  private:
-  __mmask8 bits_;
+  __mmask8 bits_{};
 };
 
 inline PackMask operator<(const Pack& a, const Pack& b) {
@@ -124,6 +124,7 @@ class PackMask {
  public:
   using Bits = std::int64_t __attribute__((vector_size(32)));
 
+  PackMask() = default;
   explicit PackMask(Bits bits) : bits_(bits) {}
 
   /// Bit k is lane k.
@@ -145,7 +146,7 @@ class PackMask {
   }
 
  private:
-  Bits bits_;
+  Bits bits_{};
 };
 
 inline PackMask operator<(const Pack& a, const Pack& b) { return PackMask(a.lanes() < b.lanes()); }
@@ -180,7 +181,8 @@ inline bool any(bool mask) { return mask; }
 #ifdef __AVX512DQ__
 
 /// Turns four rows of four numbers into four columns, in each half. Its own inverse.
-[[gnu::always_inline]] inline void transpose(Pack::Lanes& a, Pack::Lanes& b, Pack::Lanes& c, Pack::Lanes& d) {
+[[gnu::always_inline]] inline void transpose(Pack::Lanes& a, Pack::Lanes& b, Pack::Lanes& c,
+                                             Pack::Lanes& d) {
   const Pack::Lanes ab_even = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
   const Pack::Lanes ab_odd = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
   const Pack::Lanes cd_even = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14);
@@ -196,7 +198,8 @@ template <class Row>
 [[gnu::always_inline]] inline Pack::Lanes row_of(const Row& row, std::size_t k) {
   return _mm512_maskz_insertf64x4(0xFF, _mm512_castpd256_pd512(row(k)), row(k + 4), 1);
 }
-[[gnu::always_inline]] inline void store_row(double* to, std::size_t stride, std::size_t k, Pack::Lanes row) {
+[[gnu::always_inline]] inline void store_row(double* to, std::size_t stride, std::size_t k,
+                                             Pack::Lanes row) {
   store_quad(to + k * stride, __builtin_shufflevector(row, row, 0, 1, 2, 3));
   store_quad(to + (k + 4) * stride, __builtin_shufflevector(row, row, 4, 5, 6, 7));
 }
@@ -219,7 +222,8 @@ template <class Row>
 [[gnu::always_inline]] inline Quad row_of(const Row& row, std::size_t k) {
   return row(k);
 }
-[[gnu::always_inline]] inline void store_row(double* to, std::size_t stride, std::size_t k, Quad row) {
+[[gnu::always_inline]] inline void store_row(double* to, std::size_t stride, std::size_t k,
+                                             Quad row) {
   store_quad(to + k * stride, row);
 }
 
@@ -238,7 +242,8 @@ template <class Row>
 
 /// The same of row(k) - minus(k).
 template <class Row, class Minus>
-[[gnu::always_inline]] inline Vec3T<Pack> columns_of_difference(const Row& row, const Minus& minus) {
+[[gnu::always_inline]] inline Vec3T<Pack> columns_of_difference(const Row& row,
+                                                                const Minus& minus) {
   Pack::Lanes a = row_of(row, 0) - row_of(minus, 0);
   Pack::Lanes b = row_of(row, 1) - row_of(minus, 1);
   Pack::Lanes c = row_of(row, 2) - row_of(minus, 2);
@@ -248,7 +253,8 @@ template <class Row, class Minus>
 }
 
 /// Writes each lane's vector, and a zero behind it, to to + lane x stride (aligned to 32 bytes).
-[[gnu::always_inline]] inline void store_rows(const Vec3T<Pack>& v, double* to, std::size_t stride) {
+[[gnu::always_inline]] inline void store_rows(const Vec3T<Pack>& v, double* to,
+                                              std::size_t stride) {
   Pack::Lanes a = v.x.lanes();
   Pack::Lanes b = v.y.lanes();
   Pack::Lanes c = v.z.lanes();

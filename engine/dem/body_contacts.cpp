@@ -154,8 +154,7 @@ double BodyContacts::sweep(const Law& law, const Rolling& rolling,
       View::store(stored, contact_history, rolling_history);
 
       const Vec3 on_grain = result.normal * at.normal + result.tangential;
-      pushes_.push_back(
-          {i, on_grain, reach * cross(result.tangential, at.normal) + turning});
+      pushes_.push_back({i, on_grain, reach * cross(result.tangential, at.normal) + turning});
       load.force_x.add(-on_grain.x);
       load.force_y.add(-on_grain.y);
       load.force_z.add(-on_grain.z);

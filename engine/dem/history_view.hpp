@@ -38,29 +38,48 @@ struct HistoryView {
     copy_out<kRolling>(&rolling, to + kLaw * kStride);
   }
 
+  /// Stores zeros where the mask is false.
+  template <class Mask>
+  [[gnu::always_inline]] static void store_where(const Mask& mask, double* to, LawHistory law,
+                                                 RollingHistory rolling) {
+    clear_where_not<kLaw>(mask, &law);
+    clear_where_not<kRolling>(mask, &rolling);
+    store(to, law, rolling);
+  }
+
  private:
   // Number by number, so that histories stay in registers.
   template <std::size_t kCount>
   [[gnu::always_inline]] static void copy_in(const double* from, void* history) {
     auto* const to = static_cast<Real*>(history);
-    [&]<std::size_t... k>(std::index_sequence<k...>) {
-      ((to[k] = read(from + k * kStride)), ...);
-    }(std::make_index_sequence<kCount>());
+    [&]<std::size_t... k>(std::index_sequence<k...>) { ((to[k] = read(from + k * kStride)), ...); }
+    (std::make_index_sequence<kCount>());
   }
   template <std::size_t kCount>
   [[gnu::always_inline]] static void copy_out(const void* history, double* to) {
     const auto* const from = static_cast<const Real*>(history);
+    [&]<std::size_t... k>(std::index_sequence<k...>) { (write(from[k], to + k * kStride), ...); }
+    (std::make_index_sequence<kCount>());
+  }
+  template <std::size_t kCount, class Mask>
+  [[gnu::always_inline]] static void clear_where_not(const Mask& mask, void* history) {
+    auto* const numbers = static_cast<Real*>(history);
     [&]<std::size_t... k>(std::index_sequence<k...>) {
-      (write(from[k], to + k * kStride), ...);
-    }(std::make_index_sequence<kCount>());
+      ((numbers[k] = select(mask, numbers[k], Real(0.0))), ...);
+    }
+    (std::make_index_sequence<kCount>());
   }
   static Real read(const double* from) {
-    if constexpr (std::is_same_v<Real, double>) return *from;
-    else return Real::load(from);
+    if constexpr (std::is_same_v<Real, double>)
+      return *from;
+    else
+      return Real::load(from);
   }
   static void write(const Real& value, double* to) {
-    if constexpr (std::is_same_v<Real, double>) *to = value;
-    else value.store(to);
+    if constexpr (std::is_same_v<Real, double>)
+      *to = value;
+    else
+      value.store(to);
   }
 };
 

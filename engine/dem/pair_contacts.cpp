@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstddef>
 #include <limits>
 
 #include "base/check.hpp"
-#include "engine/core/pack.hpp"
-#include "engine/dem/history_view.hpp"
+#include "engine/dem/pair_pack.hpp"
 #include "engine/dem/pair_search.hpp"
 
 namespace grouser {
@@ -23,13 +21,11 @@ constexpr std::size_t kBlock = PairHistories::kBucket;
 constexpr std::size_t kChunk = 256;
 static_assert(kBlock % kChunk == 0);
 
-// Numbers of a slot's result, each vector filled up to four: force on the lower id, moment on the
-// lower id, moment on the higher id.
-constexpr std::size_t kResult = 12;
+// Packs whose geometry is found before their laws are evaluated.
+constexpr std::size_t kBatch = 8;
 
-// Places of a grain's vectors among its numbers.
-constexpr std::size_t kVelocity = offsetof(Particle, velocity) / sizeof(double);
-constexpr std::size_t kSpin = offsetof(Particle, spin) / sizeof(double);
+// Pairs between fetching a grain and using it.
+constexpr std::size_t kAhead = 64;
 
 // Steps that the slots should last at the present speed, within these shares of the skin.
 constexpr double kSlotSteps = 24.0;
@@ -117,8 +113,8 @@ void PairContacts::renumber(const std::vector<Particle>& particles,
 
 void PairContacts::build(const std::vector<Particle>& particles, std::size_t owned, double skin) {
   // Places of grains are held in 32 bits.
-  GROUSER_CHECK(particles.size() < std::numeric_limits<std::uint32_t>::max() / sizeof(Particle) *
-                                       sizeof(double));
+  GROUSER_CHECK(particles.size() <
+                std::numeric_limits<std::uint32_t>::max() / sizeof(Particle) * sizeof(double));
   owned_ = owned;
   skin_ = skin;
   kept_.sort();
@@ -280,99 +276,48 @@ void PairContacts::order_sides(const std::vector<Particle>& particles) {
     }
   const std::uint32_t capacity = std::bit_ceil(window);
   result_mask_ = capacity - 1;
-  if (results_.size() < capacity * kResult) results_.resize(capacity * kResult);
+  if (results_.size() < capacity * kPairResult) results_.resize(capacity * kPairResult);
+}
+
+// Asks for the second grains of a pack that is evaluated soon; the first ones follow one another.
+inline void fetch_ahead(const double* grains, const PairSlots& slots, std::size_t slot) {
+  if (slot + kLanes > slots.size()) return;
+  const std::uint32_t* const lower = slots.lower_places(slot);
+  const std::uint32_t* const higher = slots.higher_places(slot);
+  for (std::size_t k = 0; k < kLanes; ++k) {
+    const double* const grain = grains + std::max(lower[k], higher[k]);
+    __builtin_prefetch(grain);
+    __builtin_prefetch(grain + 11);
+  }
 }
 
 template <class Law, class Rolling>
 double PairContacts::sweep(const Law& law, const Rolling& rolling,
                            const std::vector<Particle>& particles, double time_step,
                            const Finish& finish) {
-  using View = HistoryView<Law, Rolling, Pack>;
   const double* const grains = particles.empty() ? nullptr : &particles[0].position.x;
-  const auto rows = [grains](const std::uint32_t* places, std::size_t member) {
-    return [=](std::size_t k) { return load_quad(grains + places[k] + member); };
-  };
-  const auto vectors = [&](const std::uint32_t* at, std::size_t member) {
-    return columns_of(rows(at, member));
-  };
-  // Differences are formed record by record: half the work of turning both.
-  const auto difference = [&](const std::uint32_t* a, const std::uint32_t* b, std::size_t member) {
-    return columns_of_difference(rows(a, member), rows(b, member));
-  };
-
+  std::array<PairPack, kBatch> packs;
   Pack largest;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    Block& block = blocks_[b];
-    PairSlots& slots = block.slots;
-    std::uint32_t slot = 0;
-    for (std::size_t chunk = 0; chunk < block.chunk_end.size(); ++chunk) {
-      for (; slot < block.chunk_end[chunk]; slot += kLanes) {
-        const std::uint32_t* const lower = slots.lower_places(slot);
-        const std::uint32_t* const higher = slots.higher_places(slot);
-        const double* const shape = slots.shapes(slot);
-        double* const stored = slots.histories(slot);
-        double* const result = &results_[((block.first_slot + slot) & result_mask_) * kResult];
-        std::uint8_t& touching = slots.touching(slot);
-
-        const Vec3T<Pack> apart = difference(lower, higher, 0);
-        const Pack radius_a = Pack::load(shape);
-        const Pack radius_b = Pack::load(shape + kLanes);
-        const Pack reach = radius_a + radius_b;
-        const Pack distance2 = norm2(apart);
-        // Written so that a NaN counts as a touch and spreads to where it is noticed.
-        const PackMask touches = !(distance2 >= reach * reach);
-        const unsigned touches_bits = touches.to_unsigned();
-        if (touches_bits == 0) {
-          std::fill_n(result, kResult * kLanes, 0.0);
-          if (touching != 0) std::fill_n(stored, View::kWidth * kLanes, 0.0);
-          touching = 0;
-          continue;
+    PairSlots& slots = blocks_[b].slots;
+    std::size_t slot = 0;
+    for (std::size_t chunk = 0; chunk < blocks_[b].chunk_end.size(); ++chunk) {
+      const std::size_t end = blocks_[b].chunk_end[chunk];
+      while (slot < end) {
+        const std::size_t count = std::min(kBatch, (end - slot) / kLanes);
+        for (std::size_t k = 0; k < count; ++k) {
+          fetch_ahead(grains, slots, slot + k * kLanes + kAhead);
+          packs[k].approach(grains, slots, slot + k * kLanes);
         }
-        touching = static_cast<std::uint8_t>(touches_bits);
-
-        const Pack distance = sqrt(distance2);
-        ContactPointT<Pack> at;
-        at.overlap = reach - distance;
-        at.radius = Pack::load(shape + 2 * kLanes);
-        at.mass = Pack::load(shape + 3 * kLanes);
-        at.normal = (Pack(1.0) / distance) * apart;
-        const Vec3T<Pack> velocity = difference(lower, higher, kVelocity);
-        at.normal_velocity = dot(velocity, at.normal);
-        const Pack half = Pack(0.5) * at.overlap;
-        const Pack arm_a = radius_a - half;
-        const Pack arm_b = radius_b - half;
-        const Vec3T<Pack> spin_a = vectors(lower, kSpin);
-        const Vec3T<Pack> spin_b = vectors(higher, kSpin);
-        at.slip_velocity = velocity - at.normal_velocity * at.normal -
-                           cross(arm_a * spin_a + arm_b * spin_b, at.normal);
-        const Vec3T<Pack> spin = spin_a - spin_b;
-        at.rolling_rate = spin - dot(spin, at.normal) * at.normal;
-
-        typename View::LawHistory contact_history;
-        typename View::RollingHistory rolling_history;
-        View::load(stored, contact_history, rolling_history);
-        const ContactForceT<Pack> contact = law.evaluate(at, contact_history, time_step);
-        const Vec3T<Pack> turning = rolling.evaluate(at, contact, rolling_history, time_step);
-        View::store(stored, contact_history, rolling_history);
-        Vec3T<Pack> on_lower = contact.normal * at.normal + contact.tangential;
-        const Vec3T<Pack> twist = cross(contact.tangential, at.normal);
-        Vec3T<Pack> turn_a = arm_a * twist + turning;
-        Vec3T<Pack> turn_b = arm_b * twist - turning;
-        if (touches_bits != (1u << kLanes) - 1) {
-          const Vec3T<Pack> none;
-          on_lower = select(touches, on_lower, none);
-          turn_a = select(touches, turn_a, none);
-          turn_b = select(touches, turn_b, none);
-          for (std::size_t c = 0; c < View::kWidth; ++c)
-            select(touches, Pack::load(stored + c * kLanes), Pack()).store(stored + c * kLanes);
+        for (std::size_t k = 0; k < count; ++k, slot += kLanes) {
+          const PairPack& pack = packs[k];
+          const std::size_t place = (blocks_[b].first_slot + slot) & result_mask_;
+          pack.act(law, rolling, time_step, slots.histories(slot), &results_[place * kPairResult]);
+          slots.touching(slot) = static_cast<std::uint8_t>(pack.touches.to_unsigned());
+          // A new largest share is rare: the division waits for it.
+          const PackMask is_larger = pack.touches & (pack.at.overlap > largest * pack.smaller);
+          if (any(is_larger)) largest = select(is_larger, pack.at.overlap / pack.smaller, largest);
         }
-        // A new largest share is rare: the division waits for it.
-        const Pack smaller = select(radius_a < radius_b, radius_a, radius_b);
-        const PackMask is_larger = touches & (at.overlap > largest * smaller);
-        if (any(is_larger)) largest = select(is_larger, at.overlap / smaller, largest);
-        store_rows(on_lower, result, kResult);
-        store_rows(turn_a, result + 4, kResult);
-        store_rows(turn_b, result + 8, kResult);
       }
       const std::size_t first = b * kBlock + chunk * kChunk;
       const std::size_t last = std::min(first + kChunk, owned_);
@@ -397,7 +342,7 @@ void PairContacts::add_up(std::size_t first, std::size_t last) {
     for (std::uint32_t at = side_start_[first + local]; at < side_start_[first + local + 1]; ++at) {
       const std::uint32_t side = sides_[at];
       const std::uint32_t is_higher = side & 1u;
-      const double* const result = &results_[(side >> 1 & result_mask_) * kResult];
+      const double* const result = &results_[(side >> 1 & result_mask_) * kPairResult];
       sum += flip_signs(load_quad(result), load_quad(kSign + 4 * is_higher));
       turn += load_quad(result + 4 + 4 * is_higher);
     }

@@ -88,8 +88,8 @@ World::StepResult World::step(double request) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     BodyLoad& load = loads_[b];
     load = BodyLoad{};
-    overlap = std::max(
-        overlap, body_contacts_[b].sweep(particles_, bodies_[b], settings_.time_step, load));
+    overlap = std::max(overlap,
+                       body_contacts_[b].sweep(particles_, bodies_[b], settings_.time_step, load));
     totals.sums.insert(totals.sums.end(), {load.force_x, load.force_y, load.force_z,
                                            load.force_moment_y, load.couple_y});
   }

@@ -146,7 +146,7 @@ class World : public Stateful {
   std::vector<BodyLoad> loads_;
   std::int64_t count_ = 0;       // of grains on all ranks
   std::vector<Place> built_at_;  // where grains were when the list was made
-  double rounding_ = 0.0;  // bound of what a Place leaves out [m]
+  double rounding_ = 0.0;        // bound of what a Place leaves out [m]
   bool must_rebuild_ = true;
   double moved_ = 0.0;       // bound of grain displacement since then [m]
   double near_moved_ = 0.0;  // bound of grain against body displacement since find_near [m]

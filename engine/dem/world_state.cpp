@@ -59,13 +59,11 @@ void World::save_state(State& state) const {
   touches.name = "body_contacts";
   touches.key_count = total;
   touches.real_fields = contacts.real_fields;
-  pairs_.each_history(particles_,
-                      [&](std::uint32_t grain, std::int64_t other, const double* values) {
-                        contacts.integers.insert(contacts.integers.end(),
-                                                 {particles_[grain].id, other});
-                        contacts.reals.insert(contacts.reals.end(), values,
-                                              values + pairs_.history_width());
-                      });
+  pairs_.each_history(
+      particles_, [&](std::uint32_t grain, std::int64_t other, const double* values) {
+        contacts.integers.insert(contacts.integers.end(), {particles_[grain].id, other});
+        contacts.reals.insert(contacts.reals.end(), values, values + pairs_.history_width());
+      });
   for (std::size_t b = 0; b < body_contacts_.size(); ++b) {
     const BodyContacts& on_body = body_contacts_[b];
     for (std::size_t t = 0; t < on_body.count(); ++t) {

@@ -55,8 +55,7 @@ class ElasticPlasticRolling {
     moment -= (stiffness * Real(time_step)) * at.rolling_rate;
     const Real limit = Real(rolling_friction_) * at.radius * force.normal;
     const Real length2 = norm2(moment);
-    const auto yields = length2 > limit * limit;
-    if (any(yields)) moment *= select(yields, limit / sqrt(length2), Real(1.0));
+    moment *= select(length2 > limit * limit, limit / sqrt(length2), Real(1.0));
     history.moment = moment;
     return moment;
   }
