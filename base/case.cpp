@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <numbers>
 
 #include "base/hash.hpp"
 
@@ -189,6 +191,13 @@ double largest_diameter(const GrainsCase& grains) {
 }  // namespace
 
 void describe(FieldVisitor& v, Case& c) {
+// For messages: three digits tell enough.
+std::string rounded(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
   v.quantity({"gravity", "acceleration of gravity, downward", kOptional}, c.gravity, "m s-2",
              Range::positive());
   v.group({"box", "open-topped box that holds the soil"},
@@ -211,6 +220,13 @@ void describe(FieldVisitor& v, Case& c) {
   v.rule("box", largest_diameter(c.grains) < std::min({c.box.length, c.box.width, c.box.depth}),
          "is smaller than one grain",
          "the largest grain, coarse graining included, is " +
+  const double rayleigh = rayleigh_time(c.grains);
+  v.rule("numerics.time_step", c.numerics.time_step <= rayleigh,
+         "is " + rounded(c.numerics.time_step) +
+             " s, over the Rayleigh time of the smallest grain, " + rounded(rayleigh) +
+             " s: contacts would gain energy until the run breaks down",
+         "give " + rounded(kSoundRayleighShare * rayleigh) +
+             " s or less, or leave it out: it is then rayleigh_fraction of that time");
              std::to_string(largest_diameter(c.grains) * 1e3) + " mm");
   v.rule("bed", c.bed.depth <= c.box.depth, "depth is above the box walls",
          "the walls are as high as box.depth");
@@ -260,6 +276,34 @@ double run_duration(const Case& input) {
 namespace {
 
 // A value that the wheel's drive or profile never looks at makes no other run.
+double rayleigh_time(const GrainsCase& grains) {
+  if (grains.size_curve.empty()) return 0.0;
+  const double nu = grains.solid.poisson_ratio;
+  const double shear = grains.solid.young_modulus / (2.0 * (1.0 + nu));
+  const double smallest = grains.size_curve.front().diameter * grains.coarse_graining;
+  return std::numbers::pi * 0.5 * smallest * std::sqrt(grains.density / shear) /
+         (0.1631 * nu + 0.8766);
+}
+
+double time_step_of(const Case& input) {
+  if (input.numerics.time_step > 0.0) return input.numerics.time_step;
+  return input.numerics.rayleigh_fraction * rayleigh_time(input.grains);
+}
+
+std::vector<Problem> case_warnings(const YamlNode& node, const Case& input) {
+  const double share = time_step_of(input) / rayleigh_time(input.grains);
+  if (share <= kSoundRayleighShare) return {};
+  const bool is_given = input.numerics.time_step > 0.0;
+  const std::string key = is_given ? "numerics.time_step" : "numerics.rayleigh_fraction";
+  const YamlNode* at = node.find_path(key);
+  if (at == nullptr) at = &node;
+  return {{at->file, at->line, at->column, key,
+           "makes the time step " + rounded(share) +
+               " of the Rayleigh time of the smallest grain, " +
+               rounded(rayleigh_time(input.grains)) + " s",
+           "over " + rounded(kSoundRayleighShare) + " of it contacts may gain energy"}};
+}
+
 void leave_out_unused(WheelCase& wheel) {
   const WheelCase defaults;
   if (wheel.drive != "slip") wheel.slip = defaults.slip;

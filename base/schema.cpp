@@ -111,7 +111,7 @@ class Reader : public FieldVisitor {
   void rule(const char* key, bool holds, const std::string& problem,
             const std::string& hint) override {
     if (holds || broken_) return;
-    const YamlNode* at = node_.find(key);
+    const YamlNode* at = node_.find_path(key);
     report(at != nullptr ? *at : node_, path_.empty() ? key : path_ + "." + key, problem, hint);
   }
 

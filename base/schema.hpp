@@ -64,7 +64,8 @@ class FieldVisitor {
   /// A sequence of maps. `resize` is called with the number of items before `item` is.
   virtual void list(const Field& field, std::size_t count,
                     const std::function<void(std::size_t)>& resize, const ItemBody& item) = 0;
-  /// A further rule over values already visited, reported at the position of `key`.
+  /// A further rule over values already visited, reported at the position of `key`, which may be a
+  /// dotted path.
   virtual void rule(const char* key, bool holds, const std::string& problem,
                     const std::string& hint) = 0;
   /// A rule over the value of `key` alone; it is checked although other keys may be wrong.
