@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "base/hash.hpp"
+#include "base/substitution.hpp"
 
 namespace grouser {
 namespace {
@@ -120,6 +121,8 @@ void describe_wheel_shape(FieldVisitor& v, WheelCase& w) {
   v.quantity({"stl_scale", "length of one unit of the surface file", kOptional}, w.stl_scale, "m",
              Range::positive());
   describe_solid(v, w.solid);
+  v.check("stl_file", names_in_braces(w.stl_file).empty(), "takes no {name}",
+          "write the path itself; it counts from the YAML file");
   v.rule("stl_file", w.profile != "stl" || !w.stl_file.empty(), "is needed for profile stl",
          "name the surface file");
   v.rule("grousers",
@@ -188,9 +191,6 @@ double largest_diameter(const GrainsCase& grains) {
                                    : grains.size_curve.back().diameter * grains.coarse_graining;
 }
 
-}  // namespace
-
-void describe(FieldVisitor& v, Case& c) {
 // For messages: three digits tell enough.
 std::string rounded(double value) {
   char text[32];
@@ -198,6 +198,9 @@ std::string rounded(double value) {
   return text;
 }
 
+}  // namespace
+
+void describe(FieldVisitor& v, Case& c) {
   v.quantity({"gravity", "acceleration of gravity, downward", kOptional}, c.gravity, "m s-2",
              Range::positive());
   v.group({"box", "open-topped box that holds the soil"},
@@ -217,9 +220,6 @@ std::string rounded(double value) {
           [&](FieldVisitor& inner) { describe_numerics(inner, c.numerics); });
   v.group({"output", "what is written how often", kOptional},
           [&](FieldVisitor& inner) { describe_output(inner, c.output); });
-  v.rule("box", largest_diameter(c.grains) < std::min({c.box.length, c.box.width, c.box.depth}),
-         "is smaller than one grain",
-         "the largest grain, coarse graining included, is " +
   const double rayleigh = rayleigh_time(c.grains);
   v.rule("numerics.time_step", c.numerics.time_step <= rayleigh,
          "is " + rounded(c.numerics.time_step) +
@@ -227,6 +227,9 @@ std::string rounded(double value) {
              " s: contacts would gain energy until the run breaks down",
          "give " + rounded(kSoundRayleighShare * rayleigh) +
              " s or less, or leave it out: it is then rayleigh_fraction of that time");
+  v.rule("box", largest_diameter(c.grains) < std::min({c.box.length, c.box.width, c.box.depth}),
+         "is smaller than one grain",
+         "the largest grain, coarse graining included, is " +
              std::to_string(largest_diameter(c.grains) * 1e3) + " mm");
   v.rule("bed", c.bed.depth <= c.box.depth, "depth is above the box walls",
          "the walls are as high as box.depth");
@@ -273,9 +276,6 @@ double run_duration(const Case& input) {
   return wheel.settle_time + drive;
 }
 
-namespace {
-
-// A value that the wheel's drive or profile never looks at makes no other run.
 double rayleigh_time(const GrainsCase& grains) {
   if (grains.size_curve.empty()) return 0.0;
   const double nu = grains.solid.poisson_ratio;
@@ -304,6 +304,9 @@ std::vector<Problem> case_warnings(const YamlNode& node, const Case& input) {
            "over " + rounded(kSoundRayleighShare) + " of it contacts may gain energy"}};
 }
 
+namespace {
+
+// A value that the wheel's drive or profile never looks at makes no other run.
 void leave_out_unused(WheelCase& wheel) {
   const WheelCase defaults;
   if (wheel.drive != "slip") wheel.slip = defaults.slip;

@@ -78,13 +78,14 @@ class FieldVisitor {
 
 /// Fills a struct from `node`, appending every problem found to `problems`: missing, unknown
 /// (with the nearest known key), wrong kind, wrong unit, out of range. Nothing is thrown. Local.
+/// @param path  of `node` in its document, "" = it is the document
 void read_fields(const YamlNode& node, const FieldVisitor::Body& body,
-                 std::vector<Problem>& problems);
+                 std::vector<Problem>& problems, const std::string& path = "");
 
 /// The struct as YAML in SI units; reading it back gives the same bits. Local.
 YamlNode write_fields(const FieldVisitor::Body& body);
 
-/// Markdown table rows of all fields: key, unit, range, default, meaning. Local.
-std::string reference_of(const FieldVisitor::Body& body);
+/// Markdown table rows of all fields: key below `path`, unit, range, default, meaning. Local.
+std::string reference_of(const FieldVisitor::Body& body, const std::string& path = "");
 
 }  // namespace grouser

@@ -66,6 +66,7 @@ Driver::Driver(const std::filesystem::path& root, Store& store, Scheduler& sched
       clock_(clock),
       shared_(job_settings(root, store)),
       kind_(scheduler_kind(shared_.settings.scheduler)),
+  shared.home = home_directory();
       policy_(policy_of(kind_, shared_.settings, patience)) {}
 
 TickReport Driver::tick() {

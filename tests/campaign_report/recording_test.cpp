@@ -154,7 +154,7 @@ TEST(ReportSettings, UnknownWordsAndKeysAreRefused) {
       kConfigs, problems);
   const std::string text = text_of(problems);
   for (const char* const part :
-       {"c.yaml:1:13: horizontal: 'slipp'", "did you mean 'neglected'",
+       {"c.yaml:1:13: report.horizontal: 'slipp'", "did you mean 'neglected'",
         "c.yaml:2:21: report.recordings[0].path: ", "nowhere/recording.yaml: cannot be read"})
     EXPECT_NE(text.find(part), std::string::npos) << part << " is missing from\n" << text;
 }
