@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <numbers>
 
 #include "base/hash.hpp"
+#include "base/substitution.hpp"
 
 namespace grouser {
 namespace {
@@ -118,6 +121,8 @@ void describe_wheel_shape(FieldVisitor& v, WheelCase& w) {
   v.quantity({"stl_scale", "length of one unit of the surface file", kOptional}, w.stl_scale, "m",
              Range::positive());
   describe_solid(v, w.solid);
+  v.check("stl_file", names_in_braces(w.stl_file).empty(), "takes no {name}",
+          "write the path itself; it counts from the YAML file");
   v.rule("stl_file", w.profile != "stl" || !w.stl_file.empty(), "is needed for profile stl",
          "name the surface file");
   v.rule("grousers",
@@ -186,6 +191,13 @@ double largest_diameter(const GrainsCase& grains) {
                                    : grains.size_curve.back().diameter * grains.coarse_graining;
 }
 
+// For messages: three digits tell enough.
+std::string rounded(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
 }  // namespace
 
 void describe(FieldVisitor& v, Case& c) {
@@ -208,6 +220,13 @@ void describe(FieldVisitor& v, Case& c) {
           [&](FieldVisitor& inner) { describe_numerics(inner, c.numerics); });
   v.group({"output", "what is written how often", kOptional},
           [&](FieldVisitor& inner) { describe_output(inner, c.output); });
+  const double rayleigh = rayleigh_time(c.grains);
+  v.rule("numerics.time_step", c.numerics.time_step <= rayleigh,
+         "is " + rounded(c.numerics.time_step) +
+             " s, over the Rayleigh time of the smallest grain, " + rounded(rayleigh) +
+             " s: contacts would gain energy until the run breaks down",
+         "give " + rounded(kSoundRayleighShare * rayleigh) +
+             " s or less, or leave it out: it is then rayleigh_fraction of that time");
   v.rule("box", largest_diameter(c.grains) < std::min({c.box.length, c.box.width, c.box.depth}),
          "is smaller than one grain",
          "the largest grain, coarse graining included, is " +
@@ -255,6 +274,34 @@ double run_duration(const Case& input) {
                            ? 0.5 * wheel.ramp_time + wheel.travel / wheel.forward_speed
                            : std::sqrt(2.0 * wheel.travel * wheel.ramp_time / wheel.forward_speed);
   return wheel.settle_time + drive;
+}
+
+double rayleigh_time(const GrainsCase& grains) {
+  if (grains.size_curve.empty()) return 0.0;
+  const double nu = grains.solid.poisson_ratio;
+  const double shear = grains.solid.young_modulus / (2.0 * (1.0 + nu));
+  const double smallest = grains.size_curve.front().diameter * grains.coarse_graining;
+  return std::numbers::pi * 0.5 * smallest * std::sqrt(grains.density / shear) /
+         (0.1631 * nu + 0.8766);
+}
+
+double time_step_of(const Case& input) {
+  if (input.numerics.time_step > 0.0) return input.numerics.time_step;
+  return input.numerics.rayleigh_fraction * rayleigh_time(input.grains);
+}
+
+std::vector<Problem> case_warnings(const YamlNode& node, const Case& input) {
+  const double share = time_step_of(input) / rayleigh_time(input.grains);
+  if (share <= kSoundRayleighShare) return {};
+  const bool is_given = input.numerics.time_step > 0.0;
+  const std::string key = is_given ? "numerics.time_step" : "numerics.rayleigh_fraction";
+  const YamlNode* at = node.find_path(key);
+  if (at == nullptr) at = &node;
+  return {{at->file, at->line, at->column, key,
+           "makes the time step " + rounded(share) +
+               " of the Rayleigh time of the smallest grain, " +
+               rounded(rayleigh_time(input.grains)) + " s",
+           "over " + rounded(kSoundRayleighShare) + " of it contacts may gain energy"}};
 }
 
 namespace {

@@ -138,6 +138,21 @@ Case bed_case(const Case& input);
 /// [s]. 0 for a bed, whose length is known only when it has settled. Local.
 double run_duration(const Case& input);
 
+/// Smallest time in which a shear wave rounds a grain, Rayleigh's surface wave [s]. Knows the
+/// grains alone: a contact with a much stiffer body is shorter. 0 without a size curve. Source:
+/// Sheng, Lawrence, Briscoe, Thornton 2004, eq. 5.
+double rayleigh_time(const GrainsCase& grains);
+
+/// Above this share of the Rayleigh time a step may let contacts gain energy.
+inline constexpr double kSoundRayleighShare = 0.3;
+
+/// Time step of a case [s]: given, or its fraction of the Rayleigh time. Local.
+double time_step_of(const Case& input);
+
+/// What is allowed but seldom meant, at its place in `node`, from which `input` was read without
+/// problems. Local.
+std::vector<Problem> case_warnings(const YamlNode& node, const Case& input);
+
 /// Content key of a case: 16 hexadecimal digits of the XXH3 hash of its SI text, with what does not
 /// change the trajectory (output intervals, the overlap limit, values of another drive or profile)
 /// left out. Local.

@@ -111,7 +111,7 @@ class Reader : public FieldVisitor {
   void rule(const char* key, bool holds, const std::string& problem,
             const std::string& hint) override {
     if (holds || broken_) return;
-    const YamlNode* at = node_.find(key);
+    const YamlNode* at = node_.find_path(key);
     report(at != nullptr ? *at : node_, path_.empty() ? key : path_ + "." + key, problem, hint);
   }
 
@@ -313,8 +313,8 @@ std::string Range::text() const {
 }
 
 void read_fields(const YamlNode& node, const FieldVisitor::Body& body,
-                 std::vector<Problem>& problems) {
-  Reader reader(node, "", problems);
+                 std::vector<Problem>& problems, const std::string& path) {
+  Reader reader(node, path, problems);
   body(reader);
   reader.refuse_unknown();
 }
@@ -325,8 +325,8 @@ YamlNode write_fields(const FieldVisitor::Body& body) {
   return writer.node;
 }
 
-std::string reference_of(const FieldVisitor::Body& body) {
-  ReferenceWriter writer("");
+std::string reference_of(const FieldVisitor::Body& body, const std::string& path) {
+  ReferenceWriter writer(path);
   body(writer);
   return writer.text;
 }

@@ -64,7 +64,8 @@ class FieldVisitor {
   /// A sequence of maps. `resize` is called with the number of items before `item` is.
   virtual void list(const Field& field, std::size_t count,
                     const std::function<void(std::size_t)>& resize, const ItemBody& item) = 0;
-  /// A further rule over values already visited, reported at the position of `key`.
+  /// A further rule over values already visited, reported at the position of `key`, which may be a
+  /// dotted path.
   virtual void rule(const char* key, bool holds, const std::string& problem,
                     const std::string& hint) = 0;
   /// A rule over the value of `key` alone; it is checked although other keys may be wrong.
@@ -77,13 +78,14 @@ class FieldVisitor {
 
 /// Fills a struct from `node`, appending every problem found to `problems`: missing, unknown
 /// (with the nearest known key), wrong kind, wrong unit, out of range. Nothing is thrown. Local.
+/// @param path  of `node` in its document, "" = it is the document
 void read_fields(const YamlNode& node, const FieldVisitor::Body& body,
-                 std::vector<Problem>& problems);
+                 std::vector<Problem>& problems, const std::string& path = "");
 
 /// The struct as YAML in SI units; reading it back gives the same bits. Local.
 YamlNode write_fields(const FieldVisitor::Body& body);
 
-/// Markdown table rows of all fields: key, unit, range, default, meaning. Local.
-std::string reference_of(const FieldVisitor::Body& body);
+/// Markdown table rows of all fields: key below `path`, unit, range, default, meaning. Local.
+std::string reference_of(const FieldVisitor::Body& body, const std::string& path = "");
 
 }  // namespace grouser

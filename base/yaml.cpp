@@ -105,6 +105,13 @@ YamlNode* YamlNode::find(const std::string& key) {
   return nullptr;
 }
 
+const YamlNode* YamlNode::find_path(const std::string& path) const {
+  const YamlNode* at = this;
+  std::istringstream steps(path);
+  for (std::string step; at != nullptr && std::getline(steps, step, '.');) at = at->find(step);
+  return at;
+}
+
 void YamlNode::overlay(const std::string& path, const YamlNode& value) {
   YamlNode* at = this;
   std::istringstream steps(path);

@@ -25,6 +25,9 @@ struct YamlNode {
   const YamlNode* find(const std::string& key) const;
   YamlNode* find(const std::string& key);
 
+  /// The value at the dotted `path` (`wheel.slip`), or nullptr.
+  const YamlNode* find_path(const std::string& path) const;
+
   /// Puts `value` at the dotted `path` (`wheel.slip`), making maps on the way. Later paths win.
   /// @throws std::invalid_argument when a step of the path meets something that is not a map
   void overlay(const std::string& path, const YamlNode& value);

@@ -9,12 +9,18 @@ say() {
   printf '== %s\n' "$*"
 }
 
-# Names from packages.txt for the given uses (build, test).
+# Names from packages.txt for the given uses (build, test), those that may be left out included.
 packages_for() {
   local use
   for use in "$@"; do
-    awk -v use="$use" '$1 == use { print $2 }' "$repository/deploy/packages.txt"
+    awk -v use="$use" '$1 == use || $1 == use "?" { print $2 }' "$repository/deploy/packages.txt"
   done
+}
+
+# Whether packages.txt lets one be left out.
+may_be_left_out() {
+  awk -v name="$1" '$1 ~ /[?]$/ && $2 == name { found = 1 } END { exit !found }' \
+    "$repository/deploy/packages.txt"
 }
 
 # Those of the given packages that are not installed.
@@ -34,7 +40,8 @@ apt_get() {
 # is possible, else prints the exact list. Without dpkg nobody can tell what is missing, so the
 # build goes on and names it.
 need_packages() {
-  local -a all missing
+  local -a all missing needed=()
+  local name
   mapfile -t all < <(packages_for "$@")
   if ! command -v dpkg-query >/dev/null; then
     say "not Debian: these Debian 12 packages, or what they hold, must be installed"
@@ -47,6 +54,13 @@ need_packages() {
     return
   fi
   if [ "$(id -u)" -ne 0 ]; then
+    for name in "${missing[@]}"; do
+      may_be_left_out "$name" || needed+=("$name")
+    done
+    if [ "${#needed[@]}" -eq 0 ]; then
+      say "packages: going on without ${missing[*]}, which may be left out"
+      return
+    fi
     say "packages: ${#missing[@]} are missing and only root may install them; run"
     printf 'apt-get install --no-install-recommends %s\n' "${missing[*]}"
     return 1

@@ -7,14 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "base/errors.hpp"
+#include "base/substitution.hpp"
 #include "schedulers/scheduler.hpp"
 #include "schedulers/shell.hpp"
 
 namespace grouser {
 namespace {
-
-// Word that stands for the number of ranks in a launcher.
-constexpr const char* kRanksWord = "{ranks}";
 
 std::string clock_text(double seconds) {
   const auto whole = static_cast<long long>(std::ceil(seconds));
@@ -48,12 +46,10 @@ std::string launch_line(const JobSpec& spec, const std::string& backend_launcher
   if (spec.launcher.empty()) {
     line = backend_launcher;
   } else {
-    for (std::string word : split_words(spec.launcher)) {
-      const auto at = word.find(kRanksWord);
-      if (at != std::string::npos)
-        word.replace(at, std::string(kRanksWord).size(), std::to_string(spec.ranks));
-      line += (line.empty() ? "" : " ") + shell_quote(word);
-    }
+    const auto values = launcher_values(spec);
+    // Split before anything is put in: a value with a blank stays one word.
+    for (const std::string& word : split_words(spec.launcher))
+      line += (line.empty() ? "" : " ") + shell_quote(substitute(word, values));
   }
   return line + (line.empty() ? "" : " ") + shell_join(spec.engine);
 }
@@ -147,6 +143,14 @@ std::string pbs_select(const JobSpec& spec) {
 }
 
 }  // namespace
+
+std::map<std::string, std::string> launcher_values(const JobSpec& spec) {
+  return {{"campaign", spec.campaign},
+          {"home", spec.home},
+          {"ranks", std::to_string(spec.ranks)},
+          {"root", spec.root.string()},
+          {"run", spec.label}};
+}
 
 std::string make_local_script(const JobSpec& spec) {
   // One rank needs no launcher, and does without its start-up time.

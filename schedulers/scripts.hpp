@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,9 @@ struct JobSpec {
   std::string campaign;
   std::string label;  ///< of the run
   std::string token;
+  std::filesystem::path root;           ///< of the campaign, absolute
   std::filesystem::path run_directory;  ///< absolute
+  std::string home;                     ///< of the user who submits
   std::vector<std::string> engine;      ///< program and its arguments, without ranks
   std::int64_t ranks = 1;
   std::int64_t nodes = 0;  ///< 0 = the scheduler decides
@@ -25,6 +28,9 @@ struct JobSpec {
   std::string launcher;    ///< words before the engine; "" = the backend's own
   std::string setup_file;  ///< shell file read first; "" = none
 };
+
+/// What the `{name}`s in a launcher stand for; there are no others. Pure.
+std::map<std::string, std::string> launcher_values(const JobSpec& spec);
 
 /// The job scripts, as pure functions of the job. Each script goes to the run directory, leaves at
 /// once when the fence names another attempt, starts the engine in the background, turns TERM and

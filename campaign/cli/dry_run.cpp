@@ -34,6 +34,7 @@ void show_scripts(const Plan& plan, const std::filesystem::path& root,
   shared.root = root;
   shared.campaign = plan.name;
   shared.engine = engine;
+  shared.home = home_directory();
   shared.settings = plan.settings;
   std::map<std::string, RunRow> beds;
   if (!script_dir.empty()) std::filesystem::create_directories(script_dir);

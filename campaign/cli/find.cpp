@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iostream>
 #include <sstream>
 
 #include "campaign/cli/machine.hpp"
@@ -92,11 +93,14 @@ fs::path root_of(const std::string& name, const std::string& given) {
 }
 
 Plan checked_plan(const std::string& file, const std::string& site) {
-  return plan_campaign(file, site, [&](const CampaignFile& read, std::vector<Problem>& problems) {
-    check_machine(read, problems);
-    if (read.report.kind == YamlNode::Kind::kMap)
-      check_report(read.report, fs::absolute(file).parent_path(), problems);
-  });
+  Plan plan =
+      plan_campaign(file, site, [&](const CampaignFile& read, std::vector<Problem>& problems) {
+        check_machine(read, problems);
+        if (read.report.kind == YamlNode::Kind::kMap)
+          check_report(read.report, fs::absolute(file).parent_path(), problems);
+      });
+  for (const Problem& one : plan.warnings) std::cerr << "warning: " << one.text() << "\n";
+  return plan;
 }
 
 std::vector<RunRow> select_runs(const Store& store, const std::vector<std::string>& patterns,

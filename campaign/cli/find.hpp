@@ -19,7 +19,7 @@ std::filesystem::path find_root(const std::string& where);
 std::filesystem::path root_of(const std::string& name, const std::string& given);
 
 /// Reads, expands and checks a campaign file, the recordings its report names and, for scheduler
-/// `local`, this machine included.
+/// `local`, this machine included. Warnings go to standard error.
 /// @throws ConfigError with every problem. Local.
 Plan checked_plan(const std::string& file, const std::string& site);
 

@@ -10,15 +10,22 @@
 
 namespace grouser {
 
-std::vector<RunView> view_runs(const Store& store, const std::filesystem::path& root) {
+std::vector<RunView> view_runs(const Store& store, const std::filesystem::path& root,
+                               const std::vector<Observation>& found) {
   std::vector<RunView> views;
+  std::map<RunId, const Observation*> news;
+  for (const Observation& one : found) news[one.change.run->id] = &one;
   for (const RunRow& run : store.runs()) {
     if (!run.in_plan) continue;
     RunView& view = views.emplace_back();
     view.run = run;
-    view.time = run.time;
-    view.end_time = run.end_time;
-    if (!is_active(run.state)) continue;
+    if (const auto one = news.find(run.id); one != news.end()) {
+      view.news = *one->second;
+      view.run = *view.news->change.run;
+    }
+    view.time = view.run.time;
+    view.end_time = view.run.end_time;
+    if (!is_active(view.run.state) || (view.news && view.news->has_ended)) continue;
     view.progress = read_progress(root / run.directory);
     if (!view.progress) continue;
     // An attempt before this one may have left the file.
@@ -45,8 +52,12 @@ void count_work(const Store& store, std::vector<RunView>& views) {
     const auto view = by_id.find(chunk.run);
     if (view == by_id.end()) continue;
     ++view->second->chunks;
-    const bool is_done = chunk.state == State::kChunkDone || chunk.state == State::kCompleted ||
-                         chunk.state == State::kSteady;
+    State state = chunk.state;
+    const auto& news = view->second->news;
+    if (news && news->change.chunk && news->change.chunk->id == chunk.id)
+      state = news->change.chunk->state;
+    const bool is_done =
+        state == State::kChunkDone || state == State::kCompleted || state == State::kSteady;
     view->second->chunks_done += is_done ? 1 : 0;
   }
 }

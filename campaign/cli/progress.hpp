@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/run_contract.hpp"
+#include "campaign/drive/observe.hpp"
 #include "campaign/store/store.hpp"
 
 namespace grouser {
@@ -15,6 +16,7 @@ namespace grouser {
 struct RunView {
   RunRow run;
   std::optional<Progress> progress;  ///< of an active run that has written one
+  std::optional<Observation> news;   ///< what no tick has written down yet; `run` holds it
   double time = 0.0;                 ///< simulated [s]
   double end_time = 0.0;             ///< 0 = unknown [s]
   std::int64_t attempts = 0;         ///< this and the next two by count_work
@@ -22,8 +24,10 @@ struct RunView {
   std::int64_t chunks_done = 0;
 };
 
-/// All runs in the plan; reads the progress files of the active ones. Local.
-std::vector<RunView> view_runs(const Store& store, const std::filesystem::path& root);
+/// All runs in the plan, as the database has them but for what was found since; reads the progress
+/// files of the active ones. Local.
+std::vector<RunView> view_runs(const Store& store, const std::filesystem::path& root,
+                               const std::vector<Observation>& found = {});
 
 /// How many runs the YAML no longer has.
 std::size_t count_left_out(const Store& store);

@@ -3,6 +3,7 @@
 #include <iostream>
 #include <memory>
 
+#include "campaign/cli/attention.hpp"
 #include "campaign/cli/exit_codes.hpp"
 #include "campaign/cli/find.hpp"
 #include "campaign/cli/json_text.hpp"
@@ -10,6 +11,7 @@
 #include "campaign/cli/text.hpp"
 #include "campaign/cli/verbs.hpp"
 #include "campaign/drive/clock.hpp"
+#include "campaign/drive/driver.hpp"
 
 namespace grouser {
 namespace {
@@ -21,7 +23,11 @@ struct Options {
   bool as_json = false;
   bool watch = false;
   bool check = false;
+  bool refresh = false;
 };
+
+// Its job has ended, and what follows is for the next tick to decide.
+bool is_unsettled(const RunView& view) { return view.news && view.news->has_ended; }
 
 Json json_of(const RunView& view) {
   Json axes = Json::object();
@@ -30,6 +36,7 @@ Json json_of(const RunView& view) {
             {"kind", word_of(view.run.kind)},
             {"state", word_of(view.run.state)},
             {"reason", view.run.reason},
+            {"unsettled", is_unsettled(view)},
             {"directory", view.run.directory.string()},
             {"axes", axes},
             {"step", view.run.step},
@@ -50,6 +57,10 @@ Json json_of(const RunView& view) {
   return json;
 }
 
+auto count_unsettled(const std::vector<RunView>& views) {
+  return std::count_if(views.begin(), views.end(), is_unsettled);
+}
+
 void print_json(const CampaignRow& campaign, const std::filesystem::path& root,
                 const std::vector<RunView>& views, std::size_t left_out) {
   Json counts = Json::object();
@@ -65,6 +76,7 @@ void print_json(const CampaignRow& campaign, const std::filesystem::path& root,
                               {"root", root.string()},
                               {"counts", counts},
                               {"left_out", left_out},
+                              {"unsettled", count_unsettled(views)},
                               {"runs", runs}});
 }
 
@@ -94,7 +106,35 @@ void print_table(const CampaignRow& campaign, const std::filesystem::path& root,
 }
 
 bool needs_attention(const RunView& view) {
-  return view.run.state == State::kHeld || view.run.state == State::kFailed;
+  return waits_for_person(view.run.state) || (view.news && view.news->has_failed);
+}
+
+// A campaign stands still when nobody ticks, and nobody else would say so.
+void say_what_is_due(const std::vector<RunView>& views, const std::filesystem::path& root) {
+  const auto unsettled = count_unsettled(views);
+  std::vector<RunRow> runs;
+  bool is_at_work = false;
+  for (const RunView& view : views) {
+    runs.push_back(view.run);
+    is_at_work = is_at_work || (is_active(view.run.state) && !is_unsettled(view));
+  }
+  if (unsettled > 0)
+    std::cout << unsettled << (unsettled == 1 ? " job has" : " jobs have")
+              << " ended since the last tick";
+  else if (!is_at_work && !is_at_rest(runs))
+    std::cout << "no job is at work, and there is more to do";
+  else
+    return;
+  std::cout << "; unless a manager is at work, go on with\n  grouser tick -C " << root.string()
+            << "\n";
+}
+
+// Jobs of this machine are looked at: that costs nobody anything. A batch system is asked only when
+// a person says so.
+std::unique_ptr<Scheduler> scheduler_to_ask(const std::filesystem::path& root, const Store& store,
+                                            bool refresh) {
+  const SchedulerKind& kind = scheduler_kind(job_settings(root, store).settings.scheduler);
+  return kind.is_batch && !refresh ? nullptr : kind.make(root);
 }
 
 int status(const Options& options) {
@@ -102,8 +142,9 @@ int status(const Options& options) {
   const Store store = Store::open_read_only(root / Store::kFileName);
   const CampaignRow campaign = store.campaign();
   SystemClock clock;
+  const auto scheduler = scheduler_to_ask(root, store, options.refresh);
   for (;;) {
-    auto views = view_runs(store, root);
+    auto views = view_runs(store, root, observe(root, store, scheduler.get(), clock.now()));
     count_work(store, views);
     const std::size_t left_out = count_left_out(store);
     if (options.watch && !options.as_json) std::cout << "\033[H\033[2J";
@@ -111,6 +152,7 @@ int status(const Options& options) {
       print_json(campaign, root, views, left_out);
     else
       print_table(campaign, root, views, left_out);
+    if (!options.as_json) say_what_is_due(views, root);
     std::cout << std::flush;
     // Nobody would see another look.
     if (!options.watch || !std::cout) {
@@ -126,11 +168,13 @@ int status(const Options& options) {
 void add_status(CLI::App& app, int& code) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand(
-      "status", "where every run is; asks files and database, never a scheduler");
+      "status", "where every run is; looks at database, files and the jobs of this machine");
   verb->add_option("-C,--campaign,campaign", options->where, "root, name or YAML of the campaign");
   verb->add_flag("--json", options->as_json, "as JSON");
   verb->add_flag("--watch", options->watch, "again every two seconds until Ctrl-C");
-  verb->add_flag("--check", options->check, "exit code 1 when a run is HELD or FAILED");
+  verb->add_flag("--refresh", options->refresh, "ask a batch scheduler as well");
+  verb->add_flag("--check", options->check,
+                 "exit code 1 when a run is HELD or FAILED, or its job was found dead");
   verb->callback([options, &code] { code = status(*options); });
 }
 

@@ -3,6 +3,7 @@
 #include <iostream>
 #include <memory>
 
+#include "campaign/cli/attention.hpp"
 #include "campaign/cli/dry_run.hpp"
 #include "campaign/cli/exit_codes.hpp"
 #include "campaign/cli/find.hpp"
@@ -122,7 +123,7 @@ bool is_complete(const Store& store) {
 }
 
 void say_how_to_go_on(const std::filesystem::path& root) {
-  std::cout << "jobs run on by themselves; carry the campaign on with\n"
+  std::cout << "carry the campaign on with\n"
             << "  grouser tick -C " << root.string() << "     (again and again, or from cron)\n"
             << "and look at it with\n"
             << "  grouser status -C " << root.string() << "\n";
@@ -133,9 +134,20 @@ int finish(OpenCampaign& campaign) {
   const auto page = write_report(request);
   std::cout << "\n" << summary_table(request) << "\nreport: " << page.string() << "\n";
   if (is_complete(campaign.store())) return exit_codes::kOk;
-  std::cout << "some runs wait for a person: grouser status -C " << campaign.root().string()
-            << "\n";
+  if (report_waiting(campaign.store().runs(), campaign.root()) == exit_codes::kOk)
+    std::cout << "some runs have no result: grouser status -C " << campaign.root().string() << "\n";
   return exit_codes::kAttention;
+}
+
+// After the first jobs, or none when the scheduler took none.
+int leave(const OpenCampaign& campaign, const std::vector<RunRow>& runs) {
+  const bool is_at_work =
+      std::any_of(runs.begin(), runs.end(), [](const RunRow& run) { return is_active(run.state); });
+  if (is_at_work || !is_at_rest(runs)) {
+    std::cout << (is_at_work ? "jobs run on by themselves; " : "no job is at work yet; ");
+    say_how_to_go_on(campaign.root());
+  }
+  return report_waiting(runs, campaign.root());
 }
 
 int submit(const Options& options) {
@@ -148,11 +160,10 @@ int submit(const Options& options) {
   if (options.detach || (is_batch && !options.wait)) {
     for (const std::string& message : campaign.tick(options.drive, kLeasePatience).messages)
       std::cout << message << "\n";
-    say_how_to_go_on(root);
-    return exit_codes::kOk;
+    return leave(campaign, campaign.store().runs());
   }
   if (drive_in_foreground(campaign, options.drive)) return finish(campaign);
-  std::cout << "\ninterrupted; ";
+  std::cout << "\ninterrupted; jobs run on by themselves; ";
   say_how_to_go_on(root);
   std::cout << "or in the foreground with the same grouser submit\n";
   return exit_codes::kAttention;

@@ -2,6 +2,7 @@
 #include <iostream>
 #include <memory>
 
+#include "campaign/cli/attention.hpp"
 #include "campaign/cli/exit_codes.hpp"
 #include "campaign/cli/find.hpp"
 #include "campaign/cli/foreground.hpp"
@@ -19,12 +20,14 @@ struct Options {
 
 int tick(const Options& options) {
   OpenCampaign campaign(find_root(options.where));
-  if (options.wait)
-    return drive_in_foreground(campaign, options.drive) ? exit_codes::kOk : exit_codes::kAttention;
+  if (options.wait) {
+    if (!drive_in_foreground(campaign, options.drive)) return exit_codes::kAttention;
+    return report_waiting(campaign.store().runs(), campaign.root());
+  }
   for (const std::string& message : campaign.tick(options.drive, 0.0).messages)
     std::cout << message << "\n";
   std::cout << count_states(view_runs(campaign.store(), campaign.root())) << "\n";
-  return exit_codes::kOk;
+  return report_waiting(campaign.store().runs(), campaign.root());
 }
 
 }  // namespace

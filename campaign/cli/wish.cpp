@@ -5,6 +5,7 @@
 #include <iostream>
 #include <set>
 
+#include "campaign/cli/attention.hpp"
 #include "campaign/cli/exit_codes.hpp"
 #include "campaign/cli/find.hpp"
 #include "campaign/drive/compare.hpp"
@@ -61,6 +62,15 @@ bool any_ending(const Store& store, const std::set<RunId>& runs) {
   });
 }
 
+// A resumed run that is held again was not helped. One that was stopped is held as it was meant.
+int code_after(const Store& store, const std::filesystem::path& root, const std::set<RunId>& meant,
+               Wish wish) {
+  if (wish != Wish::kResume) return exit_codes::kOk;
+  std::vector<RunRow> runs;
+  for (const RunId id : meant) runs.push_back(store.run(id));
+  return report_waiting(runs, root);
+}
+
 }  // namespace
 
 void add_wish_options(CLI::App& verb, WishOptions& options) {
@@ -78,7 +88,8 @@ int carry_out(const WishOptions& options, Wish wish, const std::string& done_wor
   for (;;) {
     for (const std::string& message : campaign.tick(options.drive, kLeasePatience).messages)
       std::cout << message << "\n";
-    if (!any_ending(campaign.store(), meant)) return exit_codes::kOk;
+    if (!any_ending(campaign.store(), meant))
+      return code_after(campaign.store(), campaign.root(), meant, wish);
     if (campaign.clock().now() >= end) break;
     campaign.clock().sleep(std::max(kStep, options.drive.every));
   }

@@ -58,6 +58,12 @@ Sighting look(const AttemptRow& attempt, const Evidence& evidence, const Policy&
 Change settle(const RunRow& run, const ChunkRow& chunk, const AttemptRow& attempt,
               const Ending& ending, const Evidence& evidence, const Policy& policy, double now);
 
+/// The rows that a sighting of `attempt` changes: what settle() says of one that is over, else its
+/// new state; nothing when there is nothing new. Pure.
+std::optional<Change> consequence(const RunRow& run, const ChunkRow& chunk,
+                                  const AttemptRow& attempt, const Sighting& sighting,
+                                  const Evidence& evidence, const Policy& policy, double now);
+
 /// The class of an engine's exit code. Pure.
 OutcomeClass class_of(EngineCode code);
 

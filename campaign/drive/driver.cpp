@@ -17,6 +17,17 @@ namespace {
 // Seconds between the polite request to end and the end.
 constexpr double kCancelPatience = 10.0;
 
+std::string hash_of_file(const std::filesystem::path& file) {
+  const auto content = read_file(file);
+  return content ? hash_text(*content) : "";
+}
+
+bool has_settled(const RunRow& run) {
+  return run.state == State::kCompleted || run.state == State::kSteady;
+}
+
+}  // namespace
+
 ChunkRow chunk_of(const Store& store, const AttemptRow& attempt) {
   for (const ChunkRow& chunk : store.chunks(attempt.run))
     if (chunk.id == attempt.chunk) return chunk;
@@ -32,21 +43,22 @@ Policy policy_of(const SchedulerKind& kind, const Settings& settings, const Pati
   return policy;
 }
 
-bool is_same_sight(const AttemptRow& a, const AttemptRow& b) {
-  return a.state == b.state && a.job == b.job && a.reason == b.reason && a.absences == b.absences &&
-         a.outcome_at == b.outcome_at && a.running_at == b.running_at;
+std::vector<JobKey> keys_of(const std::vector<AttemptRow>& attempts) {
+  std::vector<JobKey> keys;
+  for (const AttemptRow& attempt : attempts)
+    keys.push_back({job_name(attempt.token), attempt.job, attempt.created_at});
+  return keys;
 }
 
-std::string hash_of_file(const std::filesystem::path& file) {
-  const auto content = read_file(file);
-  return content ? hash_text(*content) : "";
+Evidence evidence_of(const std::filesystem::path& root, const RunRow& run,
+                     const AttemptRow& attempt, const QueryAnswer& answer) {
+  Evidence evidence = read_evidence(root / run.directory, attempt.token);
+  evidence.scheduler_answered = answer.is_complete;
+  evidence.why_not_answered = answer.why_not;
+  for (const JobStatus& job : answer.jobs)
+    if (job.name == job_name(attempt.token)) evidence.job = job;
+  return evidence;
 }
-
-bool has_settled(const RunRow& run) {
-  return run.state == State::kCompleted || run.state == State::kSteady;
-}
-
-}  // namespace
 
 JobSettings job_settings(const std::filesystem::path& root, const Store& store) {
   const CampaignRow campaign = store.campaign();
@@ -54,6 +66,7 @@ JobSettings job_settings(const std::filesystem::path& root, const Store& store) 
   shared.root = root;
   shared.campaign = campaign.name;
   shared.engine = campaign.engine;
+  shared.home = home_directory();
   shared.settings = read_settings(campaign.settings);
   return shared;
 }
@@ -78,36 +91,26 @@ TickReport Driver::tick() {
 void Driver::look_at_active() {
   const auto active = store_.active_attempts();
   if (active.empty()) return;
-  std::vector<JobKey> keys;
-  for (const AttemptRow& attempt : active)
-    keys.push_back({job_name(attempt.token), attempt.job, attempt.created_at});
-  const QueryAnswer answer = scheduler_.query(keys);
+  const QueryAnswer answer = scheduler_.query(keys_of(active));
   if (!answer.is_complete) report_.messages.push_back("scheduler: " + answer.why_not);
   for (const AttemptRow& attempt : active) look_at(attempt, answer);
 }
 
 void Driver::look_at(const AttemptRow& attempt, const QueryAnswer& answer) {
   const RunRow run = store_.run(attempt.run);
-  Evidence evidence = read_evidence(root_ / run.directory, attempt.token);
-  evidence.scheduler_answered = answer.is_complete;
-  evidence.why_not_answered = answer.why_not;
-  for (const JobStatus& job : answer.jobs)
-    if (job.name == job_name(attempt.token)) evidence.job = job;
-  const Sighting sighting = look(attempt, evidence, policy_, clock_.now());
-  const ChunkRow chunk = chunk_of(store_, attempt);
+  const Evidence evidence = evidence_of(root_, run, attempt, answer);
+  const double now = clock_.now();
+  const Sighting sighting = look(attempt, evidence, policy_, now);
+  const auto change =
+      consequence(run, chunk_of(store_, attempt), attempt, sighting, evidence, policy_, now);
   if (sighting.must_cancel)
     scheduler_.cancel({job_name(attempt.token), attempt.job, 0.0}, CancelMode::kKill);
   if (sighting.ending) {
-    end_attempt(run, chunk, sighting, evidence);
+    end_attempt(*change);
     return;
   }
   if (!run.request.empty()) carry_out_request(run, sighting.attempt);
-  if (is_same_sight(attempt, sighting.attempt)) return;
-  Change change{run, chunk, sighting.attempt, std::nullopt, false};
-  change.run->state = sighting.attempt.state;
-  change.run->reason = sighting.attempt.reason;
-  change.chunk->state = sighting.attempt.state;
-  store_.apply(change);
+  if (change) store_.apply(*change);
 }
 
 void Driver::carry_out_request(const RunRow& run, const AttemptRow& attempt) {
@@ -122,15 +125,12 @@ void Driver::carry_out_request(const RunRow& run, const AttemptRow& attempt) {
   if (!problem.empty()) report_.messages.push_back(run.label + ": " + problem);
 }
 
-void Driver::end_attempt(const RunRow& run, const ChunkRow& chunk, const Sighting& sighting,
-                         const Evidence& evidence) {
+void Driver::end_attempt(const Change& change) {
   fault_point("before_settle");
-  const Change change =
-      settle(run, chunk, sighting.attempt, *sighting.ending, evidence, policy_, clock_.now());
   store_.apply(change);
   fault_point("after_settle");
   ++report_.ended;
-  std::string message = run.label + ": attempt " + std::to_string(sighting.attempt.number) +
+  std::string message = change.run->label + ": attempt " + std::to_string(change.attempt->number) +
                         " ended " + word_of(change.attempt->state);
   if (!change.attempt->reason.empty()) message += " (" + change.attempt->reason + ")";
   report_.messages.push_back(message + ", run " + word_of(change.run->state));

@@ -39,8 +39,7 @@ class Driver {
   void look_at_active();
   void look_at(const AttemptRow& attempt, const QueryAnswer& answer);
   void carry_out_request(const RunRow& run, const AttemptRow& attempt);
-  void end_attempt(const RunRow& run, const ChunkRow& chunk, const Sighting& sighting,
-                   const Evidence& evidence);
+  void end_attempt(const Change& change);
   void advance_runs();
   void submit(const RunRow& run, const RunRow* bed);
   std::int64_t job_limit() const;
@@ -58,6 +57,19 @@ class Driver {
 /// Whether nothing more will happen without a person: every run has ended, is held, or waits for
 /// one that is; of a run that the YAML no longer has, no job is left. Pure.
 bool is_at_rest(const std::vector<RunRow>& runs);
+
+/// How patient the manager is with jobs of that kind. Pure.
+Policy policy_of(const SchedulerKind& kind, const Settings& settings, const Patience& patience);
+
+/// By what the jobs of the attempts are looked for. Pure.
+std::vector<JobKey> keys_of(const std::vector<AttemptRow>& attempts);
+
+/// Files of the run directory and the scheduler's answer, as far as they are about the attempt.
+Evidence evidence_of(const std::filesystem::path& root, const RunRow& run,
+                     const AttemptRow& attempt, const QueryAnswer& answer);
+
+/// The chunk that the attempt tries.
+ChunkRow chunk_of(const Store& store, const AttemptRow& attempt);
 
 /// Shared settings of the campaign in `store`, the engine's hash left out.
 JobSettings job_settings(const std::filesystem::path& root, const Store& store);

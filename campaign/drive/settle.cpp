@@ -180,6 +180,11 @@ void set_states(Change& change, Next next, const Ending& ending, const Policy& p
   run.request.clear();
 }
 
+bool is_same_sight(const AttemptRow& a, const AttemptRow& b) {
+  return a.state == b.state && a.job == b.job && a.reason == b.reason && a.absences == b.absences &&
+         a.outcome_at == b.outcome_at && a.running_at == b.running_at;
+}
+
 }  // namespace
 
 Change settle(const RunRow& run, const ChunkRow& chunk, const AttemptRow& attempt,
@@ -199,6 +204,19 @@ Change settle(const RunRow& run, const ChunkRow& chunk, const AttemptRow& attemp
   change.attempt->reason = ending.reason;
   change.attempt->ended_at = now;
   set_states(change, next, ending, policy, now);
+  return change;
+}
+
+std::optional<Change> consequence(const RunRow& run, const ChunkRow& chunk,
+                                  const AttemptRow& attempt, const Sighting& sighting,
+                                  const Evidence& evidence, const Policy& policy, double now) {
+  if (sighting.ending)
+    return settle(run, chunk, sighting.attempt, *sighting.ending, evidence, policy, now);
+  if (is_same_sight(attempt, sighting.attempt)) return std::nullopt;
+  Change change{run, chunk, sighting.attempt, std::nullopt, false};
+  change.run->state = sighting.attempt.state;
+  change.run->reason = sighting.attempt.reason;
+  change.chunk->state = sighting.attempt.state;
   return change;
 }
 

@@ -84,6 +84,8 @@ JobSpec job_spec(const JobSettings& shared, const RunRow& run, const ChunkRow& c
   spec.campaign = shared.campaign;
   spec.label = run.label;
   spec.token = token;
+  spec.root = shared.root;
+  spec.home = shared.home;
   spec.run_directory = shared.root / run.directory;
   spec.engine = {shared.engine, "--run-dir", spec.run_directory.string(), "--token", token,
                  "--restart",   "auto"};

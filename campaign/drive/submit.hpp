@@ -16,6 +16,7 @@ struct JobSettings {
   std::string campaign;
   std::string engine;       ///< absolute path
   std::string engine_hash;  ///< of the engine's program file
+  std::string home;         ///< of the user who submits
   Settings settings;
 };
 

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "campaign/plan/campaign_file.hpp"
 
+#include <pwd.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <charconv>
+#include <cstdlib>
 
 #include "base/case.hpp"
+#include "base/substitution.hpp"
 #include "base/units.hpp"
 #include "campaign/plan/names.hpp"
 #include "schedulers/table.hpp"
@@ -14,6 +20,47 @@ namespace {
 constexpr std::int64_t kVersion = 1;
 constexpr std::int64_t kMaxChunks = 10000;
 constexpr double kShortestBatchWalltime = 60.0;
+
+const std::vector<std::string> kTitleNames{"campaign"};
+const std::vector<std::string> kSetupNames{"campaign", "home"};
+
+std::vector<std::string> launcher_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : launcher_values(JobSpec{})) names.push_back(name);
+  return names;
+}
+
+// "{campaign}, {home}"
+std::string braced(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "{" : ", {") + name + "}";
+  return text;
+}
+
+struct BraceCheck {
+  bool is_good = true;
+  std::string problem;
+  std::string hint;
+};
+
+// A {name} that stands for nothing would go to the machine as it is written.
+BraceCheck look_at_braces(const std::string& text, const std::vector<std::string>& known) {
+  std::vector<std::string> unknown;
+  std::string close;
+  for (const std::string& name : names_in_braces(text)) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    unknown.push_back(name);
+    if (close.empty()) close = nearest(name, known);
+  }
+  return {unknown.empty(), "knows no " + braced(unknown),
+          (close.empty() ? "" : "did you mean {" + close + "}? ") + "known here: " + braced(known)};
+}
+
+void check_braces(FieldVisitor& v, const char* key, const std::string& text,
+                  const std::vector<std::string>& known) {
+  const BraceCheck check = look_at_braces(text, known);
+  v.check(key, check.is_good, check.problem, check.hint);
+}
 
 void describe_batch_words(FieldVisitor& v, Resources& r) {
   const char* const plain = "allowed are letters, digits and . _ + @ : / = -";
@@ -27,11 +74,14 @@ void describe_batch_words(FieldVisitor& v, Resources& r) {
   v.check("account", is_batch_name(r.account), "has characters a scheduler does not take", plain);
   v.word({"qos", "quality of service", kOptional}, r.qos, {});
   v.check("qos", is_batch_name(r.qos), "has characters a scheduler does not take", plain);
-  v.word({"launcher", "starts the ranks; {ranks} stands for their number", kOptional}, r.launcher,
-         {});
+  v.word({"launcher", "starts the ranks; takes {ranks} and others, see above", kOptional},
+         r.launcher, {});
   v.check("launcher", is_one_line(r.launcher), "has control characters", "write it on one line");
-  v.word({"setup_file", "shell file read before the engine starts (modules)", kOptional},
-         r.setup_file, {});
+  check_braces(v, "launcher", r.launcher, launcher_names());
+  v.word(
+      {"setup_file", "shell file read before the engine starts (modules); takes {campaign}, {home}",
+       kOptional},
+      r.setup_file, {});
   v.check("setup_file", is_one_line(r.setup_file), "has control characters", "give one path");
 }
 
@@ -146,13 +196,21 @@ void apply_site(YamlNode& root, const YamlNode& site, std::vector<Problem>& prob
   }
 }
 
-// Makes a path of the file absolute, counted from the directory of the file it stands in.
+// Replaces its {name}s and makes it absolute, counted from the directory of the file it stands in.
 void resolve_setup_file(CampaignFile& file, std::vector<Problem>& problems) {
   std::string& path = file.settings.resources.setup_file;
   if (path.empty()) return;
   const YamlNode* resources = file.root.find("resources");
   const YamlNode* at = resources == nullptr ? nullptr : resources->find("setup_file");
   if (at == nullptr) return;
+  // Here and not with the other keys: the database keeps the path with its {name}s replaced.
+  const BraceCheck check = look_at_braces(path, kSetupNames);
+  if (!check.is_good) {
+    problems.push_back(
+        {at->file, at->line, at->column, "resources.setup_file", check.problem, check.hint});
+    return;
+  }
+  path = substitute(path, {{"campaign", file.name}, {"home", home_directory()}});
   const auto full = std::filesystem::absolute(std::filesystem::path(at->file).parent_path() / path);
   path = full.lexically_normal().string();
   if (!std::filesystem::is_regular_file(full))
@@ -167,7 +225,8 @@ void describe(FieldVisitor& v, CampaignFile& f) {
   v.word({"campaign", "name of the campaign"}, f.name, {});
   v.check("campaign", is_campaign_name(f.name), "'" + f.name + "' cannot be a name of a campaign",
           "1 to 64 letters, digits, _ and -");
-  v.word({"title", "one line for the report's head", kOptional}, f.title, {});
+  v.word({"title", "one line for the report's head; takes {campaign}", kOptional}, f.title, {});
+  check_braces(v, "title", f.title, kTitleNames);
   describe_settings(v, f.settings);
   v.group({"chunks", "how a run is cut into jobs", kOptional},
           [&](FieldVisitor& inner) { describe_chunks(inner, f.chunks); });
@@ -179,7 +238,7 @@ void describe(FieldVisitor& v, CampaignFile& f) {
       {"sweep", "axes; the runs are all combinations of their points", kOptional}, f.sweep.size(),
       [&](std::size_t count) { f.sweep.resize(count); },
       [&](FieldVisitor& inner, std::size_t i) { describe_axis(inner, f.sweep[i]); });
-  v.raw({"report", "what the report compares with; see the report's page", kOptional}, f.report);
+  v.raw({"report", "what the report shows and compares with; keys below", kOptional}, f.report);
   v.check("report", f.report.kind == YamlNode::Kind::kMap || f.report.kind == YamlNode::Kind::kNull,
           "must be a map", "");
 }
@@ -193,8 +252,16 @@ CampaignFile read_campaign(const std::filesystem::path& path, const std::filesys
     apply_site(file.root, load_yaml(site), problems);
   read_fields(
       file.root, [&](FieldVisitor& visitor) { describe(visitor, file); }, problems);
+  file.title = substitute(file.title, {{"campaign", file.name}});
   resolve_setup_file(file, problems);
   return file;
+}
+
+std::string home_directory() {
+  const char* const variable = std::getenv("HOME");
+  if (variable != nullptr && *variable != '\0') return variable;
+  const passwd* const entry = ::getpwuid(::getuid());
+  return entry == nullptr || entry->pw_dir == nullptr ? "/" : entry->pw_dir;
 }
 
 std::string write_settings(const Settings& settings) {

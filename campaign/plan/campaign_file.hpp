@@ -74,6 +74,9 @@ void describe(FieldVisitor& visitor, CampaignFile& file);
 CampaignFile read_campaign(const std::filesystem::path& file, const std::filesystem::path& site,
                            std::vector<Problem>& problems);
 
+/// Home directory of the user this process belongs to: HOME, else what the system has. Local.
+std::string home_directory();
+
 /// The settings as YAML text and back; what the database keeps. @throws ConfigError. Local.
 std::string write_settings(const Settings& settings);
 Settings read_settings(const std::string& text);

@@ -140,7 +140,7 @@ class Planner {
     } else {
       for (std::size_t n = 0; n < *count; ++n) add_run(choice_of(file_, n));
     }
-    Plan plan{file_.name, file_.title, file_.settings, std::move(beds_)};
+    Plan plan{file_.name, file_.title, file_.settings, std::move(beds_), std::move(warnings_)};
     plan.runs.insert(plan.runs.end(), runs_.begin(), runs_.end());
     return plan;
   }
@@ -159,6 +159,7 @@ class Planner {
     run.input = read_case(node, found);
     for (const Problem& one : found) problems_.add(prefixed(one));
     if (!found.empty()) return;
+    for (const Problem& one : case_warnings(node, run.input)) warning_set_.add(prefixed(one));
     if (resolve_stl(node, run)) finish(run, choice);
   }
 
@@ -236,6 +237,8 @@ class Planner {
 
   const CampaignFile& file_;
   ProblemSet problems_;
+  std::vector<Problem> warnings_;
+  ProblemSet warning_set_{warnings_};
   std::map<std::string, std::string> labels_by_key_;
   std::set<std::string> labels_;
   std::set<std::string> bed_keys_;

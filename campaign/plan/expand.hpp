@@ -35,6 +35,7 @@ struct Plan {
   std::string title;
   Settings settings;
   std::vector<PlannedRun> runs;
+  std::vector<Problem> warnings;  ///< what is allowed but seldom meant; one of several runs once
 };
 
 /// Expands the sweep: the runs are all combinations of the axes' points, and the distinct beds

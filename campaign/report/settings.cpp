@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "campaign/report/settings.hpp"
 
+#include "base/substitution.hpp"
+
 namespace grouser {
 namespace {
 
@@ -19,30 +21,47 @@ SlipDefinition ReportSettings::slip_definition() const {
 }
 
 void describe(FieldVisitor& v, ReportSettings& s) {
-  v.word({"horizontal", "slip definition of the curves' axis", kOptional}, s.horizontal,
-         {"powered", "bounded"});
-  v.word({"scatter_axis", "sweep axis that repeats a point, such as seeds", kOptional},
+  v.word({"horizontal",
+          "slip of the curves' axis: powered is 1 - v/(omega r), bounded (omega r - v)/max(omega "
+          "r, v)",
+          kOptional},
+         s.horizontal, {"powered", "bounded"});
+  v.word({"scatter_axis",
+          "sweep axis that repeats a point: runs that differ only on it are one point with scatter",
+          kOptional},
          s.scatter_axis, {});
   v.list(
-      {"recordings", "measured values to set beside the campaign", kOptional}, s.recordings.size(),
-      [&](std::size_t count) { s.recordings.resize(count); },
+      {"recordings",
+       "measured values, set beside the campaign in curves and in a table of differences",
+       kOptional},
+      s.recordings.size(), [&](std::size_t count) { s.recordings.resize(count); },
       [&](FieldVisitor& inner, std::size_t i) {
-        inner.word({"path", "folder of the recording, relative to the campaign file"},
-                   s.recordings[i], {});
+        inner.word(
+            {"path", "folder of a recording.yaml; relative paths count from the campaign file"},
+            s.recordings[i], {});
+        inner.check("path", names_in_braces(s.recordings[i]).empty(), "takes no {name}",
+                    "write the path itself");
       });
   v.list(
-      {"neglected", "what the campaign leaves out, for readers of the report", kOptional},
+      {"neglected", "what the campaign leaves out; a list in the report", kOptional},
       s.neglected.size(), [&](std::size_t count) { s.neglected.resize(count); },
       [&](FieldVisitor& inner, std::size_t i) {
-        inner.word({"text", "one simplification and its reason"}, s.neglected[i], {});
+        inner.word({"text", "one simplification and its reason, in plain text"}, s.neglected[i],
+                   {});
       });
+}
+
+std::string report_reference() {
+  ReportSettings settings;
+  return "## Report\n\n| key | unit | range | default | meaning |\n|---|---|---|---|---|\n" +
+         reference_of([&](FieldVisitor& v) { describe(v, settings); }, "report");
 }
 
 ReportSettings read_report_settings(const YamlNode& node, std::vector<Problem>& problems) {
   ReportSettings settings;
   if (node.kind == YamlNode::Kind::kNull) return settings;
   read_fields(
-      node, [&](FieldVisitor& visitor) { describe(visitor, settings); }, problems);
+      node, [&](FieldVisitor& visitor) { describe(visitor, settings); }, problems, "report");
   return settings;
 }
 

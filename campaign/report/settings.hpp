@@ -24,6 +24,9 @@ struct ReportSettings {
 /// The one description of `report:`; see FieldVisitor.
 void describe(FieldVisitor& visitor, ReportSettings& settings);
 
+/// The reference page's table of all keys of `report:`, in Markdown. Local.
+std::string report_reference();
+
 /// Reads and checks `report:`; a null node gives the defaults. Problems are appended. Local.
 ReportSettings read_report_settings(const YamlNode& node, std::vector<Problem>& problems);
 

@@ -57,18 +57,6 @@ double SizeCurve::mean_volume() const {
   return sum * std::numbers::pi / 6.0;
 }
 
-double rayleigh_time(const GrainsCase& grains) {
-  const double nu = grains.solid.poisson_ratio;
-  const double shear = grains.solid.young_modulus / (2.0 * (1.0 + nu));
-  return std::numbers::pi * 0.5 * SizeCurve(grains).smallest() * std::sqrt(grains.density / shear) /
-         (0.1631 * nu + 0.8766);
-}
-
-double time_step_of(const Case& input) {
-  if (input.numerics.time_step > 0.0) return input.numerics.time_step;
-  return input.numerics.rayleigh_fraction * rayleigh_time(input.grains);
-}
-
 Filling::Filling(const Case& input)
     : sizes_(input.grains),
       seed_(static_cast<std::uint64_t>(input.grains.seed)),

@@ -29,13 +29,6 @@ class SizeCurve {
   std::vector<double> finer_;  // by number
 };
 
-/// Smallest time in which a shear wave rounds a grain, Rayleigh's surface wave [s].
-/// Source: Sheng, Lawrence, Briscoe, Thornton 2004, eq. 5.
-double rayleigh_time(const GrainsCase& grains);
-
-/// Time step of a case [s]: given, or its fraction of the Rayleigh time. Local.
-double time_step_of(const Case& input);
-
 /// Places of the random loose filling: a lattice of cells as wide as the largest grain, filled from
 /// the floor up, each with one grain at a random place inside. Sizes and places depend on seed and
 /// id alone, so that every rank can make any grain without the others.

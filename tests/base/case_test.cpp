@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 namespace grouser {
 namespace {
 
@@ -33,6 +36,57 @@ std::vector<Problem> problems_of(const std::string& text) {
 
 TEST(Case, AGoodCaseHasNoProblems) {
   for (const Problem& problem : problems_of(kGood)) ADD_FAILURE() << problem.text();
+}
+
+// kGood's smallest grain: r = 4.56 mm, rho = 2650, G = 50 MPa / 2.5, nu = 0.25.
+const double kGoodRayleighTime = std::numbers::pi * 4.56e-3 * std::sqrt(2650.0 / 2e7) / 0.917375;
+
+TEST(Case, TimeStepIsTheAskedShareOfTheRayleighTime) {
+  std::vector<Problem> problems;
+  Case input = read_case(parse_yaml(kGood, "a"), problems);
+  EXPECT_NEAR(rayleigh_time(input.grains), kGoodRayleighTime, 1e-12);
+  EXPECT_NEAR(time_step_of(input), 0.2 * kGoodRayleighTime, 1e-12);
+  input.numerics.time_step = 1e-6;
+  EXPECT_EQ(time_step_of(input), 1e-6);
+  EXPECT_EQ(rayleigh_time(GrainsCase{}), 0.0);
+}
+
+// 1.80e-4 s is kGood's Rayleigh time.
+TEST(Case, ATimeStepOverTheRayleighTimeIsRefusedAtItsPlace) {
+  const auto problems = problems_of(std::string(kGood) + "numerics: {time_step: 0.181 ms}\n");
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].text(),
+            "case.yaml:18:23: numerics.time_step: is 0.000181 s, over the Rayleigh time of the "
+            "smallest grain, 0.00018 s: contacts would gain energy until the run breaks down; give "
+            "5.39e-05 s or less, or leave it out: it is then rayleigh_fraction of that time");
+  EXPECT_TRUE(problems_of(std::string(kGood) + "numerics: {time_step: 0.179 ms}\n").empty());
+}
+
+TEST(Case, ATimeStepBesideABrokenGrainIsNotJudged) {
+  std::string text = std::string(kGood) + "numerics: {time_step: 1 s}\n";
+  text.replace(text.find("2650 kg/m3"), 10, "2650 kg   ");
+  EXPECT_EQ(problems_of(text).size(), 1u);
+}
+
+TEST(Case, ATimeStepOverASoundShareOfTheRayleighTimeIsAWarning) {
+  const auto warnings_of = [](const std::string& numerics) {
+    const YamlNode node = parse_yaml(kGood + numerics, "case.yaml");
+    std::vector<Problem> problems;
+    const Case input = read_case(node, problems);
+    EXPECT_TRUE(problems.empty());
+    std::string text;
+    for (const Problem& one : case_warnings(node, input)) text += one.text();
+    return text;
+  };
+  EXPECT_EQ(warnings_of(""), "");
+  EXPECT_EQ(warnings_of("numerics: {time_step: 0.053 ms}\n"), "");
+  EXPECT_EQ(
+      warnings_of("numerics: {time_step: 0.09 ms}\n"),
+      "case.yaml:18:23: numerics.time_step: makes the time step 0.501 of the Rayleigh time of "
+      "the smallest grain, 0.00018 s; over 0.3 of it contacts may gain energy");
+  EXPECT_EQ(warnings_of("numerics: {rayleigh_fraction: 0.4}\n")
+                .find("case.yaml:18:31: numerics.rayleigh_fraction: makes the time step 0.4 of"),
+            0u);
 }
 
 TEST(Case, WrittenCaseReadsBackToTheSameBits) {

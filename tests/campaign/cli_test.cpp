@@ -99,6 +99,30 @@ TEST(CheckedPlan, RefusesMoreLocalRanksThanTheMachineCanCarry) {
       << text;
 }
 
+// 94.6 us is the Rayleigh time of the small campaign's smallest grain.
+TEST(CheckedPlan, RefusesATimeStepOverTheRayleighTimeAndWarnsOfALongOne) {
+  TemporaryDirectory directory;
+  const auto file = directory.path() / "c.yaml";
+  const auto with_step = [&](const std::string& step) {
+    write_atomic(file, small_campaign(kTwoSlips) + "      - {label: b, set: {" +
+                           "numerics.time_step: " + step + "}}\n");
+    testing::internal::CaptureStderr();
+    const std::string problems = problems_of([&] { checked_plan(file.string(), ""); });
+    return problems + "|" + testing::internal::GetCapturedStderr();
+  };
+  EXPECT_EQ(with_step("20 us"), "|");
+  EXPECT_EQ(
+      with_step("40 us"),
+      "|warning: " + file.string() +
+          ":27:46: case.numerics.time_step: makes the time step 0.423 of the Rayleigh time of "
+          "the smallest grain, 9.46e-05 s; over 0.3 of it contacts may gain energy\n");
+  EXPECT_EQ(
+      with_step("95 us").find(file.string() + ":27:46: case.numerics.time_step: is 9.5e-05 s, "
+                                              "over the Rayleigh time"),
+      0u)
+      << with_step("95 us");
+}
+
 TEST(FindRoot, WhatCannotBeLookedAtIsSaidInWords) {
   TemporaryDirectory directory;
   const auto loop = directory.path() / "loop";

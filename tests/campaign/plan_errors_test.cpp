@@ -173,6 +173,26 @@ TEST(CampaignErrors, AMistakeInASiteFileIsFoundThere) {
                       "site.yaml:4:8: queue: unknown key"});
 }
 
+TEST(CampaignErrors, NamesInBracesAreOfAClosedList) {
+  EXPECT_EQ(problems_of(small_campaign(R"(title: "{campain} on sand, {date}"
+resources:
+  launcher: srun -n {rank} --chdir={ROOT}
+  setup_file: "{hom}/env.sh"
+sweep:
+  - axis: w
+    points:
+      - {label: a, set: {wheel.profile: stl, wheel.stl_file: "{home}/w.stl"}}
+)")),
+            "c.yaml:22:8: title: knows no {campain}, {date}; did you mean {campaign}? "
+            "known here: {campaign}\n"
+            "c.yaml:24:13: resources.launcher: knows no {rank}, {ROOT}; did you mean {ranks}? "
+            "known here: {campaign}, {home}, {ranks}, {root}, {run}\n"
+            "c.yaml:25:15: resources.setup_file: knows no {hom}; did you mean {home}? "
+            "known here: {campaign}, {home}\n"
+            "c.yaml:29:62: case.wheel.stl_file: takes no {name}; "
+            "write the path itself; it counts from the YAML file");
+}
+
 TEST(CampaignErrors, MissingFilesAreNamed) {
   expect_parts(problems_of(small_campaign(
                    "resources: {setup_file: env.sh}\nsweep:\n  - axis: w\n    points:\n"

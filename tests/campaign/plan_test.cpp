@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <set>
 
 #include "base/atomic_file.hpp"
@@ -121,6 +122,19 @@ TEST_F(Planning, ASiteReplacesSchedulerAndResources) {
   EXPECT_EQ(made.settings.resources.ranks, 8);
   EXPECT_EQ(made.settings.resources.walltime, 7200.0);
   EXPECT_EQ(made.settings.resources.account, "theirs");
+}
+
+TEST_F(Planning, NamesInBracesStandForCampaignAndHome) {
+  TemporaryDirectory home;
+  write_atomic(home.path() / "small.sh", "module load mpi\n");
+  const char* const before = std::getenv("HOME");
+  const std::string kept = before == nullptr ? "" : before;
+  ::setenv("HOME", home.path().c_str(), 1);
+  const Plan made = plan(small_campaign(
+      "title: \"{campaign}: {} {1, 2}\"\nresources: {setup_file: \"{home}/{campaign}.sh\"}\n"));
+  ::setenv("HOME", kept.c_str(), 1);
+  EXPECT_EQ(made.title, "small: {} {1, 2}");
+  EXPECT_EQ(made.settings.resources.setup_file, home.path() / "small.sh");
 }
 
 TEST_F(Planning, SettingsReadBackAsTheyWereWritten) {

@@ -3,6 +3,7 @@
 
 #include "base/atomic_file.hpp"
 #include "campaign/plan/campaign_file.hpp"
+#include "campaign/report/settings.hpp"
 #include "campaign/store/store.hpp"
 #include "tests/support/temporary_directory.hpp"
 
@@ -15,7 +16,8 @@ std::string page(const char* name) {
 }
 
 TEST(Reference, CampaignPageHoldsTheTablesOfTheProgram) {
-  EXPECT_NE(page("campaign_yaml.md").find(campaign_reference()), std::string::npos)
+  EXPECT_NE(page("campaign_yaml.md").find(campaign_reference() + "\n" + report_reference()),
+            std::string::npos)
       << "put the output of `grouser schema` into docs/reference/campaign_yaml.md";
 }
 

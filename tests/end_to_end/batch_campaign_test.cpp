@@ -79,6 +79,49 @@ TEST_P(BatchCampaign, SubmitLeavesAndTicksCarryOn) {
   expect_undisturbed_result();
 }
 
+TEST_P(BatchCampaign, StatusReadsTheFilesAndAsksTheSchedulerOnlyWhenTold) {
+  EXPECT_EQ(grouser({"submit", "campaign.yaml"}).code, 0);
+  const auto exit =
+      root() / runs().front().directory / "attempts" / (attempts().front().token + ".exit");
+  ASSERT_TRUE(wait_for([&] { return std::filesystem::exists(exit); }));
+  const auto seen = grouser({"status", "--check"});
+  EXPECT_EQ(seen.code, 0);
+  EXPECT_NE(seen.out.find("1 COMPLETED"), std::string::npos) << seen.out;
+  EXPECT_EQ(calls(GetParam().query), 0u);
+  EXPECT_EQ(grouser({"status", "--refresh"}).code, 0);
+  EXPECT_EQ(calls(GetParam().query), 1u);
+}
+
+TEST_P(BatchCampaign, StatusSaysThatAJobWasKilled) {
+  variables["FAKE_KILL_AT"] = "60";
+  EXPECT_EQ(grouser({"submit", "campaign.yaml"}).code, 0);
+  ASSERT_TRUE(wait_for([&] { return grouser({"status", "--check"}).code == 1; }));
+  const auto seen = grouser({"status"});
+  EXPECT_NE(seen.out.find("the job has ended and left no outcome so far"), std::string::npos)
+      << seen.out;
+  EXPECT_EQ(calls(GetParam().query), 0u);
+}
+
+TEST_P(BatchCampaign, WithoutTheSchedulersCommandsEveryVerbSaysWhatToDo) {
+  const std::string path = variables["PATH"];
+  variables["PATH"] = directory_.path().string();
+  const auto refused = grouser({"submit", "campaign.yaml"});
+  EXPECT_EQ(refused.code, 1) << refused.err;
+  EXPECT_EQ(refused.out.find("by themselves"), std::string::npos) << refused.out;
+  for (const std::string& part :
+       {std::string("1 run waits for a person:"),
+        runs().front().label + "  HELD  refused: ", "grouser resume --all -C " + root().string()})
+    EXPECT_NE(refused.out.find(part), std::string::npos) << part << "\n" << refused.out;
+  EXPECT_EQ(grouser({"tick"}).code, 1);
+  EXPECT_EQ(grouser({"tick", "--wait"}).code, 1);
+  EXPECT_EQ(grouser({"resume", "--all"}).code, 1);
+  EXPECT_EQ(grouser({"status", "--check"}).code, 1);
+  variables["PATH"] = path;
+  EXPECT_EQ(grouser({"resume", "--all"}).code, 0);
+  EXPECT_EQ(submit().code, 0);
+  expect_undisturbed_result();
+}
+
 TEST_P(BatchCampaign, AManagerThatDiedBeforeNotingTheJobFindsItAgain) {
   variables["GROUSER_FAULT"] = "after_submit";
   for (int life = 0; life < 3; ++life) EXPECT_EQ(submit().code, 137);

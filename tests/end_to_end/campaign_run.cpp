@@ -28,18 +28,6 @@ constexpr const char* kThreeSlips = R"(sweep:
       - {label: slip_20, set: {wheel.slip: 20 %}}
 )";
 
-// Jobs that a test left behind must not outlive it.
-void kill_local_jobs(const std::filesystem::path& root) {
-  std::error_code error;
-  for (const auto& job : std::filesystem::directory_iterator(root / ".local", error)) {
-    std::int64_t pid = 0;
-    std::istringstream(read_file(job.path() / "started").value_or("")) >> pid;
-    if (pid <= 1) continue;
-    for (const ProcessLine& line : session_processes(pid))
-      ::kill(static_cast<pid_t>(line.pid), SIGKILL);
-  }
-}
-
 }  // namespace
 
 CampaignRun::CampaignRun() {
@@ -47,7 +35,19 @@ CampaignRun::CampaignRun() {
   write_campaign("chunks: {count: 3}\n");
 }
 
-CampaignRun::~CampaignRun() { kill_local_jobs(root()); }
+// Jobs that a test left behind must not outlive it.
+CampaignRun::~CampaignRun() { kill_local_jobs(); }
+
+void CampaignRun::kill_local_jobs() const {
+  std::error_code error;
+  for (const auto& job : std::filesystem::directory_iterator(root() / ".local", error)) {
+    std::int64_t pid = 0;
+    std::istringstream(read_file(job.path() / "started").value_or("")) >> pid;
+    if (pid <= 1) continue;
+    for (const ProcessLine& line : session_processes(pid))
+      ::kill(static_cast<pid_t>(line.pid), SIGKILL);
+  }
+}
 
 void CampaignRun::write_campaign(const std::string& head) {
   write_atomic(directory_.path() / "campaign.yaml",

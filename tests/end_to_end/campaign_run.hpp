@@ -30,6 +30,9 @@ class CampaignRun : public ::testing::Test {
   /// Starts it in the background. @return its process, which leads a group of its own
   pid_t start(const std::vector<std::string>& words) const;
 
+  /// SIGKILL to every process of every job of scheduler `local`.
+  void kill_local_jobs() const;
+
   /// `submit` until the campaign ends.
   CommandResult submit() const;
 

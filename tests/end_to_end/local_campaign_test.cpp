@@ -200,6 +200,53 @@ TEST_F(LocalCampaign, CtrlCLeavesJobsRunningAndTickGoesOn) {
   EXPECT_EQ(attempts().size(), 10u);
 }
 
+TEST_F(LocalCampaign, StatusSaysThatEverythingWasKilledAndWritesNothing) {
+  variables["FAKE_HANG_AT"] = "50";
+  EXPECT_EQ(grouser({"submit", "campaign.yaml", "--detach"}).code, 0);
+  const std::string bed = runs().front().label;
+  ASSERT_TRUE(wait_for(
+      [&] { return std::filesystem::exists(root() / run(bed).directory / run_files::kProgress); }));
+  const auto alive = grouser({"status", "--check"});
+  EXPECT_EQ(alive.code, 0);
+  EXPECT_NE(alive.out.find("  RUNNING  "), std::string::npos) << alive.out;
+  kill_local_jobs();
+  ASSERT_TRUE(wait_for([&] { return grouser({"status", "--check"}).code == 1; }));
+  const auto dead = grouser({"status"});
+  EXPECT_EQ(dead.code, 0);
+  EXPECT_EQ(dead.out.find("RUNNING"), std::string::npos) << dead.out;
+  EXPECT_EQ(dead.out.find("QUEUED"), std::string::npos) << dead.out;
+  EXPECT_NE(dead.out.find("attempt 1: ended without an outcome (killed)"), std::string::npos)
+      << dead.out;
+  EXPECT_NE(dead.out.find("1 job has ended since the last tick; unless a manager is at work, go on "
+                          "with\n  grouser tick -C " +
+                          root().string()),
+            std::string::npos)
+      << dead.out;
+  const Json json = Json::parse(grouser({"status", "--json"}).out);
+  EXPECT_EQ(json["unsettled"], 1);
+  EXPECT_EQ(json["counts"], Json::parse(R"({"READY": 1, "PLANNED": 3})"));
+  EXPECT_EQ(json["runs"][0]["unsettled"], true);
+  EXPECT_TRUE(json["runs"][0]["progress"].is_null());
+  EXPECT_TRUE(is_active(attempts().front().state));
+  variables.erase("FAKE_HANG_AT");
+  EXPECT_EQ(submit().code, 0);
+  EXPECT_EQ(Json::parse(grouser({"status", "--json"}).out)["unsettled"], 0);
+  expect_undisturbed_result();
+}
+
+TEST_F(LocalCampaign, StatusSeesAnEndThatNoTickHasSeen) {
+  EXPECT_EQ(grouser({"submit", "campaign.yaml", "--detach"}).code, 0);
+  const auto exit = root() / ".local" / ("g" + attempts().front().token) / "exit";
+  ASSERT_TRUE(wait_for([&] { return std::filesystem::exists(exit); }));
+  const auto seen = grouser({"status", "--check"});
+  EXPECT_EQ(seen.code, 0);
+  EXPECT_NE(seen.out.find("1 COMPLETED"), std::string::npos) << seen.out;
+  EXPECT_NE(seen.out.find("1/1"), std::string::npos) << seen.out;
+  EXPECT_TRUE(is_active(attempts().front().state));
+  EXPECT_EQ(grouser({"tick"}).code, 0);
+  EXPECT_EQ(runs().front().state, State::kCompleted);
+}
+
 TEST_F(LocalCampaign, StatusQueryAndShowSpeakJson) {
   EXPECT_EQ(submit().code, 0);
   const Json status = Json::parse(grouser({"status", "--json"}).out);

@@ -57,6 +57,20 @@ TEST(Scripts, AreWordForWordTheGoldenOnes) {
   expect_golden("pbs_full.sh", make_pbs_script(spec));
 }
 
+TEST(Scripts, WhatALaunchersNamesStandForIsQuotedAsOneWord) {
+  JobSpec spec = full_spec();
+  spec.root = "/scratch/it's; rm -rf $HOME";
+  spec.home = "/home/user name";
+  spec.launcher = "wrap --root={root} {run} {campaign} {home}/bin/mpi -n {ranks}:{ranks} {other}";
+  for (const std::string& name : scheduler_names()) {
+    const std::string script = scheduler_kind(name).make_script(spec);
+    EXPECT_NE(script.find("\n'wrap' '--root=/scratch/it'\\''s; rm -rf $HOME' 'slip_20-s1' 'sweep' "
+                          "'/home/user name/bin/mpi' '-n' '10:10' '{other}' '/opt/grouser"),
+              std::string::npos)
+        << script;
+  }
+}
+
 TEST(Scripts, OfEveryKindAreGoodShell) {
   TemporaryDirectory directory;
   for (const std::string& name : scheduler_names()) {
