@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 
 namespace grouser {
@@ -15,7 +16,16 @@ class ExactSum {
   /// 32-bit digits held in 64-bit words, so that 2^31 ranks can be added without carry.
   using Limbs = std::array<std::int64_t, 4>;
 
-  void add(double term) { sum_ += static_cast<Integer>(term * kScale); }
+  void add(double term) {
+    // What a cast to Integer does, without its call: mantissa, shift, sign.
+    const auto bits = std::bit_cast<std::uint64_t>(term * kScale);
+    const int shift = static_cast<int>(bits >> 52 & 0x7FF) - 1075;
+    const std::uint64_t mantissa = (bits & 0xFFFFFFFFFFFFF) | 0x10000000000000;
+    if (shift < -52) return;
+    const Integer size = shift < 0 ? static_cast<Integer>(mantissa >> -shift)
+                                   : static_cast<Integer>(mantissa) << shift;
+    sum_ += (bits >> 63) != 0 ? -size : size;
+  }
   double value() const { return static_cast<double>(sum_) * (1.0 / kScale); }
 
   Limbs limbs() const {

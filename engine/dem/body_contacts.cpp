@@ -78,9 +78,14 @@ void BodyContacts::find_close(const std::vector<Particle>& particles, const Body
   gap_ = kGap * skin_;
   travel_ = 0.0;
   close_.clear();
-  for (const std::uint32_t i : near_)
-    if (body.search->is_within(frame.to_body(particles[i].position), particles[i].radius + gap_))
-      close_.push_back(i);
+  facets_.clear();
+  for (const std::uint32_t i : near_) {
+    const std::size_t before = facets_.size();
+    body.search->facets_within(frame.to_body(particles[i].position), particles[i].radius + gap_,
+                               facets_);
+    if (facets_.size() > before)
+      close_.push_back({i, static_cast<std::uint32_t>(facets_.size() - before)});
+  }
 }
 
 void BodyContacts::inherit(std::size_t first, std::size_t last, const MeshSearch& search,
@@ -119,10 +124,12 @@ double BodyContacts::sweep(const Law& law, const Rolling& rolling,
   std::size_t before = 0;
   std::vector<MeshTouch> now;
   std::vector<double> histories;
-  for (const std::uint32_t i : close_) {
+  const int* facets = facets_.data();
+  for (const auto& [i, facet_count] : close_) {
     const Particle& p = particles[i];
     now.clear();
-    body.search->touches_of(frame.to_body(p.position), p.radius, now);
+    body.search->touches_of(frame.to_body(p.position), p.radius, facets, facet_count, now);
+    facets += facet_count;
     while (before < touches_.size() && touches_[before].particle < i) ++before;
     std::size_t after = before;
     while (after < touches_.size() && touches_[after].particle == i) ++after;

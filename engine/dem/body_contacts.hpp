@@ -94,10 +94,17 @@ class BodyContacts {
 
   double skin_ = 0.0;
   std::vector<std::uint32_t> near_;
-  std::vector<std::uint32_t> close_;  // of them, those that may touch before grains or body have
-  double gap_ = 0.0;                  // come closer by this [m]; 0 = not known
-  double travel_ = 0.0;               // bound of how much closer they have come since [m]
-  std::vector<Touch> touches_;        // of the last step, by grain, then facet
+  // Of them, those that may touch before grains or body have come closer by gap_, each with the
+  // number of facets it may touch, and those facets one grain after the other.
+  struct Close {
+    std::uint32_t particle;
+    std::uint32_t facets;
+  };
+  std::vector<Close> close_;
+  std::vector<int> facets_;
+  double gap_ = 0.0;            // [m]; 0 = not known
+  double travel_ = 0.0;         // bound of how much closer they have come since [m]
+  std::vector<Touch> touches_;  // of the last step, by grain, then facet
   std::vector<double> history_;
   std::vector<Push> pushes_;
   std::vector<Touch> next_touches_;

@@ -89,24 +89,29 @@ void Mesh::check_closed(const std::string& name) const {
       "in a mesh program (join vertices, fix normals)"}});
 }
 
-NearestPoint nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+Triangle::Triangle(const Vec3& corner_a, const Vec3& corner_b, const Vec3& corner_c)
+    : a(corner_a),
+      b(corner_b),
+      c(corner_c),
+      ab(b - a),
+      ac(c - a),
+      d11(dot(ab, ab)),
+      d12(dot(ab, ac)),
+      d22(dot(ac, ac)),
+      det(d11 * d22 - d12 * d12) {}
+
+NearestPoint nearest_on_triangle(const Vec3& p, const Triangle& t) {
   // Barycentric coordinates of the projection; where one is negative, the nearest point is on an
   // edge facing that way.
-  const Vec3 ab = b - a;
-  const Vec3 ac = c - a;
-  const Vec3 ap = p - a;
-  const double d11 = dot(ab, ab);
-  const double d12 = dot(ab, ac);
-  const double d22 = dot(ac, ac);
-  const double e1 = dot(ab, ap);
-  const double e2 = dot(ac, ap);
-  const double det = d11 * d22 - d12 * d12;
-  const double beta = d22 * e1 - d12 * e2;
-  const double gamma = d11 * e2 - d12 * e1;
-  if (beta > 0.0 && gamma > 0.0 && beta + gamma < det)
-    return {a + (beta / det) * ab + (gamma / det) * ac, 7u};
+  const Vec3 ap = p - t.a;
+  const double e1 = dot(t.ab, ap);
+  const double e2 = dot(t.ac, ap);
+  const double beta = t.d22 * e1 - t.d12 * e2;
+  const double gamma = t.d11 * e2 - t.d12 * e1;
+  if (beta > 0.0 && gamma > 0.0 && beta + gamma < t.det)
+    return {t.a + (beta / t.det) * t.ab + (gamma / t.det) * t.ac, 7u};
 
-  const Vec3* const corner[3] = {&a, &b, &c};
+  const Vec3* const corner[3] = {&t.a, &t.b, &t.c};
   NearestPoint best;
   double best_distance = 0.0;
   for (int k = 0; k < 3; ++k) {
@@ -144,6 +149,7 @@ MeshSearch::MeshSearch(Mesh mesh, double reach)
     Mesh one{{}, {mesh_.facets[f]}};
     for (const int v : mesh_.facets[f])
       one.vertices.push_back(mesh_.vertices[static_cast<std::size_t>(v)]);
+    triangles_.emplace_back(one.vertices[0], one.vertices[1], one.vertices[2]);
     const auto [low, high] = bounds_of(one, reach);
     const std::array<int, 3> from = grid_.cell_of(low);
     const std::array<int, 3> to = grid_.cell_of(high);
@@ -151,8 +157,7 @@ MeshSearch::MeshSearch(Mesh mesh, double reach)
       for (int y = from[1]; y <= to[1]; ++y)
         for (int z = from[2]; z <= to[2]; ++z) {
           const Vec3 centre = grid_.centre({x, y, z});
-          const Vec3 nearest =
-              nearest_on_triangle(centre, one.vertices[0], one.vertices[1], one.vertices[2]).point;
+          const Vec3 nearest = nearest_on_triangle(centre, triangles_.back()).point;
           if (norm(centre - nearest) <= within)
             cells[grid_.index({x, y, z})].push_back(static_cast<int>(f));
         }
@@ -166,23 +171,34 @@ MeshSearch::MeshSearch(Mesh mesh, double reach)
   }
 }
 
+std::pair<std::uint32_t, std::uint32_t> MeshSearch::near(const Vec3& point) const {
+  if (point.x < low_.x || point.y < low_.y || point.z < low_.z || point.x > high_.x ||
+      point.y > high_.y || point.z > high_.z)
+    return {0, 0};
+  const std::size_t cell = grid_.index(grid_.cell_of(point));
+  return {start_[cell], start_[cell + 1]};
+}
+
 void MeshSearch::touches_of(const Vec3& centre, double radius,
                             std::vector<MeshTouch>& touches) const {
-  if (centre.x < low_.x || centre.y < low_.y || centre.z < low_.z || centre.x > high_.x ||
-      centre.y > high_.y || centre.z > high_.z)
-    return;
-  const std::size_t cell = grid_.index(grid_.cell_of(centre));
+  const auto [begin, end] = near(centre);
+  touches_of(centre, radius, members_.data() + begin, end - begin, touches);
+}
+
+void MeshSearch::touches_of(const Vec3& centre, double radius, const int* facets, std::size_t count,
+                            std::vector<MeshTouch>& touches) const {
   thread_local std::vector<Candidate> candidates;
   candidates.clear();
-  for (std::uint32_t m = start_[cell]; m < start_[cell + 1]; ++m) {
-    const auto& facet = mesh_.facets[static_cast<std::size_t>(members_[m])];
+  for (std::size_t k = 0; k < count; ++k) {
     const NearestPoint nearest =
-        nearest_on_triangle(centre, mesh_.vertices[static_cast<std::size_t>(facet[0])],
-                            mesh_.vertices[static_cast<std::size_t>(facet[1])],
-                            mesh_.vertices[static_cast<std::size_t>(facet[2])]);
+        nearest_on_triangle(centre, triangles_[static_cast<std::size_t>(facets[k])]);
     const double distance2 = norm2(centre - nearest.point);
     if (distance2 < radius * radius)
-      candidates.push_back({{members_[m], nearest.point, std::sqrt(distance2)}, nearest.feature});
+      candidates.push_back({{facets[k], nearest.point, std::sqrt(distance2)}, nearest.feature});
+  }
+  if (candidates.size() == 1) {
+    touches.push_back(candidates[0].touch);
+    return;
   }
   // A nearest point that also lies on a facet with a still nearer one is no local minimum; where
   // the two points agree to rounding, the touch is one and the lower facet keeps it.
@@ -201,20 +217,13 @@ void MeshSearch::touches_of(const Vec3& centre, double radius,
   }
 }
 
-bool MeshSearch::is_within(const Vec3& point, double distance) const {
-  if (point.x < low_.x || point.y < low_.y || point.z < low_.z || point.x > high_.x ||
-      point.y > high_.y || point.z > high_.z)
-    return false;
-  const std::size_t cell = grid_.index(grid_.cell_of(point));
-  return std::any_of(
-      members_.begin() + start_[cell], members_.begin() + start_[cell + 1], [&](int member) {
-        const auto corner = [&](std::size_t k) {
-          return mesh_.vertices[static_cast<std::size_t>(
-              mesh_.facets[static_cast<std::size_t>(member)][k])];
-        };
-        const NearestPoint nearest = nearest_on_triangle(point, corner(0), corner(1), corner(2));
-        return norm2(point - nearest.point) < distance * distance;
-      });
+void MeshSearch::facets_within(const Vec3& point, double distance, std::vector<int>& facets) const {
+  const auto [begin, end] = near(point);
+  for (std::uint32_t m = begin; m < end; ++m) {
+    const NearestPoint nearest =
+        nearest_on_triangle(point, triangles_[static_cast<std::size_t>(members_[m])]);
+    if (norm2(point - nearest.point) < distance * distance) facets.push_back(members_[m]);
+  }
 }
 
 bool MeshSearch::lies_on(const Candidate& candidate, int facet) const {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <utility>
 #include <vector>
 
 #include "engine/core/vec3.hpp"
@@ -38,8 +39,18 @@ struct NearestPoint {
   unsigned feature = 0;
 };
 
-/// Nearest point of the triangle a, b, c to p. Local.
-NearestPoint nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+/// A triangle with what finding its nearest point needs each time.
+struct Triangle {
+  Triangle(const Vec3& corner_a, const Vec3& corner_b, const Vec3& corner_c);
+
+  Vec3 a, b, c;
+  Vec3 ab, ac;           ///< b - a, c - a
+  double d11, d12, d22;  ///< products of ab and ac with each other [m2]
+  double det;            ///< d11 d22 - d12^2 [m4]
+};
+
+/// Nearest point of a triangle to p. Local.
+NearestPoint nearest_on_triangle(const Vec3& p, const Triangle& triangle);
 
 /// Where a sphere touches a mesh.
 struct MeshTouch {
@@ -61,13 +72,17 @@ class MeshSearch {
   /// Touches of a sphere, by rising facet number; appended to `touches`. Local.
   void touches_of(const Vec3& centre, double radius, std::vector<MeshTouch>& touches) const;
 
+  /// The same when only `count` facets, in rising order, can be touched. Local.
+  void touches_of(const Vec3& centre, double radius, const int* facets, std::size_t count,
+                  std::vector<MeshTouch>& touches) const;
+
   /// Whether the surface could come within `reach` (as constructed) of a point of the body frame.
   /// @param turns the body turns about its y axis: then the ring it sweeps is tested. Local.
   bool may_be_near(const Vec3& point, bool turns) const;
 
-  /// Whether the surface is closer to a point of the body frame than `distance` (at most `reach`,
-  /// as constructed) [m]. Local.
-  bool is_within(const Vec3& point, double distance) const;
+  /// Appends the facets closer to a point of the body frame than `distance` (at most `reach`, as
+  /// constructed) [m], in rising order. Local.
+  void facets_within(const Vec3& point, double distance, std::vector<int>& facets) const;
 
   /// Largest distance of the surface from the body's y axis [m].
   double rim() const { return ring_ - reach_; }
@@ -81,8 +96,11 @@ class MeshSearch {
     unsigned feature;
   };
   bool lies_on(const Candidate& candidate, int facet) const;
+  // Facets near the cell of a point: begin and end in members_.
+  std::pair<std::uint32_t, std::uint32_t> near(const Vec3& point) const;
 
   Mesh mesh_;
+  std::vector<Triangle> triangles_;
   double reach_;
   Vec3 low_;
   Vec3 high_;

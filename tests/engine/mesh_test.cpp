@@ -37,7 +37,7 @@ TEST(Mesh, NearestPointIsNoFartherThanAnyPointOfTheTriangle) {
   const auto point = [&] { return Vec3{unit(random), unit(random), unit(random)}; };
   for (int round = 0; round < 300; ++round) {
     const Vec3 a = point(), b = point(), c = point(), p = 2.0 * point();
-    const NearestPoint found = nearest_on_triangle(p, a, b, c);
+    const NearestPoint found = nearest_on_triangle(p, {a, b, c});
     double sampled = 1e300;
     for (int i = 0; i <= 40; ++i)
       for (int j = 0; i + j <= 40; ++j) {
