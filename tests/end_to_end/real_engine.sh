@@ -365,39 +365,63 @@ snapshots() {
   [ "$count" = 6 ] || fail "$count snapshots instead of 6"
 }
 
-campaign_yaml() {
-  printf 'grouser: 1\ncampaign: small\nscheduler: local\nresources: {ranks: %s}\nchunks: {count: 3}\n' "$1"
-  printf 'retries: {infrastructure: 50}\ncase:\n'
-  { case_yaml; wheel_yaml; } | sed 's/^/  /'
-  printf 'sweep:\n  - axis: slip\n    points:\n      - {label: towed, set: {wheel.drive: towed}}\n'
-  printf '      - {label: slip20, set: {wheel.drive: slip, wheel.slip: 20 %%}}\n'
+campaign_yaml() {  # RANKS CHUNKS
+  printf 'grouser: 1\ncampaign: small\nscheduler: local\nresources: {ranks: %s}\n' "$1"
+  printf 'chunks: {count: %s}\nretries: {infrastructure: 50}\ncase:\n' "$2"
+  # Small and short: there are many of them.
+  { case_yaml; wheel_yaml; } | sed 's/checkpoint_interval: 20 ms/checkpoint_interval: 4 ms/
+    s/width: 16 cm/width: 9 cm/; s/travel: 6 cm/travel: 3 cm/; s/^/  /'
 }
 
 final_hashes() { "$grouser" query -C "$1" "SELECT label, state_hash FROM v_runs ORDER BY label"; }
 
+submit() {  # ROOT
+  "$grouser" submit campaign.yaml --root "$1" --every 0.05 --grace 0.5 >log 2>&1
+}
+
+# Kills the engines of a campaign when its run has a checkpoint behind the first step.
+kill_driving() {  # ROOT
+  until grep -qs '"step": [1-9]' "$1"/runs/*/checkpoints/step_*.json &&
+    pkill -9 -f -- "grouser-engine --run-dir $work/$1/runs/"; do
+    sleep 0.02
+  done
+}
+
+# Managers that die at the places of a submission, one after the other, on all ranks and chunks.
 manager() {
   export GROUSER_ENGINE=$engine
-  for ranks in 1 2; do
-    campaign_yaml "$ranks" >"campaign$ranks.yaml"
-    "$grouser" submit "campaign$ranks.yaml" --root "calm$ranks" >calm.log 2>&1 ||
-      fail "undisturbed campaign: $(tail -n 5 calm.log)"
-    local deaths=0
-    for delay in 0.3 1.1 0.7 1.9 1.3 2.2; do
-      "$grouser" submit "campaign$ranks.yaml" --root "killed$ranks" --every 0.1 >killed.log 2>&1 &
-      local pid=$!
-      sleep "$delay"
-      kill -9 "$pid" 2>/dev/null && deaths=$((deaths + 1))
-      wait "$pid" 2>/dev/null || true
-      kill_engines "$work/killed$ranks" || true
+  campaign_yaml 1 1 >campaign.yaml
+  submit calm || fail "undisturbed campaign: $(tail -n 5 log)"
+  expected=$(final_hashes calm)
+  local first=(after_directories after_runs after_cancels)
+  # Before these places nothing has come of a submission, so the next manager does it again ...
+  local before=(after_tx1 after_fence after_script before_settle)
+  # ... behind these it has: the next manager dies one submission further on.
+  local behind=(after_submit after_tx2 after_settle)
+  local number=0 ranks count root place killer places
+  for ranks in 1 2 4; do
+    for count in 1 3 7; do
+      root=killed-r$ranks-c$count
+      campaign_yaml "$ranks" "$count" >campaign.yaml
+      places=("${first[number % 3]}" "${behind[number % 3]}" "${before[number % 4]}"
+        "${behind[number % 3]}")
+      # A run of one chunk has nothing more to submit.
+      [ "$count" = 1 ] || places+=("${before[number % 4]}")
+      number=$((number + 1))
+      for place in "${places[@]}"; do
+        code=0
+        GROUSER_FAULT=$place submit "$root" || code=$?
+        [ "$code" = 137 ] || fail "the manager did not die at $place: $(tail -n 5 log)"
+      done
+      kill_driving "$root" &
+      killer=$!
+      submit "$root" || fail "disturbed campaign: $(tail -n 5 log)"
+      kill "$killer" 2>/dev/null && fail "no engine of $root was killed; the test shows nothing"
+      wait "$killer" || true
+      [ "$(final_hashes "$root")" = "$expected" ] || fail "the disturbed campaign has other bits"
+      echo "same bits: campaign on $ranks ranks in $count chunks, managers killed ${places[*]}"
     done
-    [ "$deaths" -ge 3 ] || fail "only $deaths managers were killed; the test shows little"
-    "$grouser" submit "campaign$ranks.yaml" --root "killed$ranks" --every 0.1 >killed.log 2>&1 ||
-      fail "disturbed campaign: $(tail -n 5 killed.log)"
-    [ "$(final_hashes "calm$ranks")" = "$(final_hashes "killed$ranks")" ] ||
-      fail "the disturbed campaign has other bits"
-    echo "same bits: campaign on $ranks ranks, $deaths managers killed"
   done
-  [ "$(final_hashes calm1)" = "$(final_hashes calm2)" ] || fail "1 and 2 ranks differ"
 }
 
 "$scenario"
