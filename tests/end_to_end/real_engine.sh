@@ -191,9 +191,12 @@ kills() {
     [ "$code" = 137 ] || fail "with rank $rank killed the run ended with $code instead of 137"
     [ ! -e "$outcome" ] || fail "with rank $rank killed there is an outcome"
     at=$(newest_step "one-$rank")
+    echo half >"one-$rank/checkpoints/step_000000000001.h5"
     launch 2 "one-$rank" --bed bed
     expect_continued "one-$rank" "$at"
     expect_same "one-$rank" "2 ranks, rank $rank killed at step $at or later"
+    [ "$(ls "one-$rank/checkpoints" | wc -l)" = 4 ] ||
+      fail "beside two checkpoints there is more: $(ls "one-$rank/checkpoints")"
   done
 }
 
