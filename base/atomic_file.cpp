@@ -100,7 +100,7 @@ void check_room(const std::filesystem::path& directory, std::uintmax_t bytes) {
   std::error_code error;
   if (std::filesystem::space(directory, error).available < bytes)
     throw StorageError("there are no " + wanted);
-  const std::filesystem::path probe = directory / (".room-" + std::to_string(::getpid()));
+  const std::filesystem::path probe = directory / (kRoomProbe + std::to_string(::getpid()));
   Descriptor descriptor(::open(probe.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
   if (descriptor.get() < 0) fail("create", probe);
   // fallocate proper: the library's emulation would write every block.

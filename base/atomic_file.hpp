@@ -22,6 +22,9 @@ void sync_path(const std::filesystem::path& path);
 /// The file's whole content, or nothing when there is no such file. @throws StorageError. Local.
 std::optional<std::string> read_file(const std::filesystem::path& file);
 
+/// How names of the files begin with which check_room asks; a kill may leave one.
+inline constexpr const char* kRoomProbe = ".room-";
+
 /// Makes sure that `bytes` more fit into `directory`, quotas included: allocates them in a file
 /// that is removed again. On file systems that cannot allocate, free space alone is asked.
 /// @throws StorageError when they do not fit. Local.

@@ -293,6 +293,7 @@ bool Run::write_checkpoint(bool settled) {
     reason_ = "another attempt owns the run";
     return false;
   }
+  checkpoints_.remove_leftovers();  // before the write, which may need their room
   const auto written = checkpoints_.write(std::move(state), manifest, [&] {
     try {
       return owns_fence();

@@ -23,8 +23,25 @@ std::size_t bytes_of(const State& state) {
   return bytes;
 }
 
+constexpr const char* kFilePrefix = "step_";
+
 // Headers and attributes of a file, beside its data.
 constexpr std::uintmax_t kFileOverhead = 256 << 10;
+
+bool is_absent(fs::path file, const char* extension) {
+  std::error_code ignored;
+  return fs::status(file.replace_extension(extension), ignored).type() == fs::file_type::not_found;
+}
+
+// A kill leaves a state file without its manifest, a half-written manifest or a test of the room.
+// A file whose manifest was put aside as damaged stays for people to look at.
+bool is_unpublished(const fs::path& file) {
+  const std::string name = file.filename().string();
+  if (name.starts_with(kRoomProbe)) return true;
+  if (!name.starts_with(kFilePrefix)) return false;
+  if (name.find(".json.tmp-") != std::string::npos) return true;
+  return file.extension() == ".h5" && is_absent(file, ".json") && is_absent(file, ".bad");
+}
 
 }  // namespace
 
@@ -39,8 +56,10 @@ State read_checkpoint(const Communicator& ranks, const fs::path& directory,
       throw FormatError(file.string() + " has not the size its manifest tells");
   });
   // Only a file of the right size is opened by all ranks together.
-  if (failure.empty())
+  if (failure.empty()) {
     failure = agreed_failure(ranks, [&] { state = read_state_file(ranks, file); });
+    if (!failure.empty()) failure = file.string() + ": " + failure;
+  }
   if (failure.empty() && hex(hash_state(ranks, state)) != manifest.state_hash)
     failure = file.string() + " does not have the hash its manifest tells";
   if (!failure.empty()) throw FormatError(failure);
@@ -50,7 +69,22 @@ State read_checkpoint(const Communicator& ranks, const fs::path& directory,
 CheckpointStore::CheckpointStore(const Communicator& ranks, const fs::path& directory,
                                  std::string input)
     : ranks_(ranks), directory_(directory), input_(std::move(input)) {
-  on_first_rank(ranks_, [&] { fs::create_directories(directory_); });
+  on_first_rank(ranks_, [&] {
+    fs::create_directories(directory_);
+    for (const auto& entry : fs::directory_iterator(directory_))
+      if (is_unpublished(entry.path())) leftovers_.push_back(entry.path());
+  });
+}
+
+void CheckpointStore::remove_leftovers() {
+  for (const fs::path& file : leftovers_) {
+    std::error_code error;
+    // Asked again: one that was slow to publish may have done so since.
+    if (!is_unpublished(file) || !fs::remove(file, error)) continue;
+    spdlog::info("io unpublished {} of an earlier attempt removed", file.filename().string());
+  }
+  leftovers_.clear();
+  ranks_.barrier();
 }
 
 CheckpointManifest CheckpointStore::write_data(State state, CheckpointManifest manifest) {
@@ -59,8 +93,8 @@ CheckpointManifest CheckpointStore::write_data(State state, CheckpointManifest m
   const std::int64_t bytes = ranks_.sum(static_cast<std::int64_t>(bytes_of(state)));
   std::string name;
   if (ranks_.rank() == 0) {
-    name = "step_" + run_files::step_digits(manifest.step);
-    // What a killed attempt left under the same name is not touched.
+    name = kFilePrefix + run_files::step_digits(manifest.step);
+    // What another attempt left under the same name is not touched.
     for (int again = 1; fs::exists(directory_ / (name + ".h5")); ++again)
       name = name.substr(0, name.find('-')) + "-" + std::to_string(again);
   }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/run_contract.hpp"
 #include "engine/core/communicator.hpp"
@@ -54,6 +55,12 @@ class CheckpointStore {
   /// Removes all but the newest `keep` checkpoints. Collective.
   void retain(std::size_t keep);
 
+  /// Removes what attempts before this one began and never published, as far as it lay in the
+  /// directory when this store was made. To be called by the owner of the run only: who owns it now
+  /// owned it then, so those files' writers have lost it and may not publish them any more. Files
+  /// that came later are left alone; a next owner may be writing them. Collective.
+  void remove_leftovers();
+
  private:
   CheckpointManifest write_data(State state, CheckpointManifest manifest);
   void publish(const CheckpointManifest& manifest);
@@ -63,6 +70,7 @@ class CheckpointStore {
   Communicator ranks_;
   std::filesystem::path directory_;
   std::string input_;
+  std::vector<std::filesystem::path> leftovers_;  // rank 0
 };
 
 /// Reads the file of `manifest` in `directory` and checks every table's hash.

@@ -3,12 +3,15 @@
 
 #include <algorithm>
 
+#include "base/hash.hpp"
 #include "engine/io/h5_rows.hpp"
 
 namespace grouser {
 namespace {
 
-constexpr std::int64_t kFormatVersion = 1;
+constexpr std::int64_t kFormatVersion = 2;
+constexpr const char* kHash = "hash";
+constexpr const char* kInput = "case";
 
 std::string read_text(hid_t place, const char* name) {
   H5Handle attribute(H5Aopen(place, name, H5P_DEFAULT), H5Aclose,
@@ -28,6 +31,25 @@ std::int64_t read_number(hid_t place, const char* name) {
   return value;
 }
 
+// Hash of a dataset, the same however its rows are spread: every row counts with its place.
+template <class Number>
+std::string hash_of_rows(const Communicator& ranks, std::int64_t first,
+                         const std::vector<Number>& values, std::size_t rows, std::size_t width) {
+  std::uint64_t local = 0;
+  for (std::size_t row = 0; row < rows; ++row)
+    local += hash_bytes(values.data() + row * width, width * sizeof(Number),
+                        static_cast<std::uint64_t>(first) + row);
+  return hex(ranks.wrap_sum(local));
+}
+
+void check_hash(hid_t dataset, const std::string& found) {
+  if (read_text(dataset, kHash) == found) return;
+  std::string path(256, '\0');
+  path.resize(static_cast<std::size_t>(
+      std::max<ssize_t>(0, H5Iget_name(dataset, path.data(), path.size()))));
+  throw FormatError("dataset " + path + " does not have the hash written with it");
+}
+
 // One field of a table as a dataset rows x width; `column` is its place in the rows of `values`.
 template <class Number>
 void write_field(const Communicator& ranks, hid_t group, const StateField& field,
@@ -40,6 +62,8 @@ void write_field(const Communicator& ranks, hid_t group, const StateField& field
                 block.begin() + static_cast<std::ptrdiff_t>(row * width));
   const H5Handle dataset = write_rows(ranks, group, field.name, block, width);
   write_text(dataset, "unit", field.unit);
+  const std::int64_t first = ranks.sum_before(static_cast<std::int64_t>(rows));
+  write_text(dataset, kHash, hash_of_rows(ranks, first, block, rows, width));
 }
 
 // Rows first ... first + count - 1 of a dataset into one column of `values`.
@@ -61,6 +85,7 @@ void read_field(const Communicator& ranks, hid_t group, const StateField& field,
            H5Dread(dataset, h5_type<Number>(), memory_space, file_space, collective_transfer(ranks),
                    block.data()),
            "read dataset " + field.name);
+  check_hash(dataset, hash_of_rows(ranks, static_cast<std::int64_t>(first), block, rows, width));
   for (std::size_t row = 0; row < rows; ++row)
     std::copy_n(block.begin() + static_cast<std::ptrdiff_t>(row * width), width,
                 values.begin() + static_cast<std::ptrdiff_t>(row * row_width + column));
@@ -149,6 +174,36 @@ StateTable read_table(const Communicator& ranks, hid_t file, const std::string& 
   return table;
 }
 
+void write_input(const Communicator& ranks, hid_t file, const std::string& input) {
+  const H5Handle dataset =
+      write_rows(ranks, file, kInput,
+                 ranks.rank() == 0 ? std::vector<std::uint8_t>(input.begin(), input.end())
+                                   : std::vector<std::uint8_t>{},
+                 0);
+  write_text(dataset, kHash, ranks.from_first(hash_text(input)));
+}
+
+// Nobody computes with the stored case; it is read only to know that it is whole.
+void check_input(const Communicator& ranks, hid_t file) {
+  H5Handle dataset(H5Dopen2(file, kInput, H5P_DEFAULT), H5Dclose, "open the stored case");
+  H5Handle file_space(H5Dget_space(dataset), H5Sclose, "ask a data space");
+  const hssize_t size = H5Sget_simple_extent_npoints(file_space);
+  if (size < 0) throw FormatError("the stored case has no size");
+  const hsize_t start = 0;
+  const hsize_t count = ranks.rank() == 0 ? static_cast<hsize_t>(size) : 0;
+  std::string text(count, '\0');
+  if (size > 0) {
+    H5Handle memory_space(H5Screate_simple(1, &count, nullptr), H5Sclose, "make a data space");
+    select_rows(file_space, memory_space, &start, &count);
+    char nothing = 0;
+    h5_agree(ranks,
+             H5Dread(dataset, h5_type<std::uint8_t>(), memory_space, file_space,
+                     collective_transfer(ranks), text.empty() ? &nothing : text.data()),
+             "read the stored case");
+  }
+  check_hash(dataset, ranks.from_first(hash_text(text)));
+}
+
 }  // namespace
 
 void write_state_file(const Communicator& ranks, const std::filesystem::path& file,
@@ -165,10 +220,7 @@ void write_state_file(const Communicator& ranks, const std::filesystem::path& fi
     names += (names.empty() ? "" : " ") + table.name;
   }
   write_text(h5, "tables", names);
-  write_rows(ranks, h5, "case",
-             ranks.rank() == 0 ? std::vector<std::uint8_t>(input.begin(), input.end())
-                               : std::vector<std::uint8_t>{},
-             0);
+  write_input(ranks, h5, input);
   h5.close("finish " + file.string());
 }
 
@@ -176,8 +228,7 @@ State read_state_file(const Communicator& ranks, const std::filesystem::path& fi
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   H5Handle h5(H5Fopen(file.c_str(), H5F_ACC_RDONLY, file_access(ranks)), H5Fclose,
               "open " + file.string());
-  if (read_number(h5, "format") != kFormatVersion)
-    throw FormatError(file.string() + " has another format version");
+  if (read_number(h5, "format") != kFormatVersion) throw FormatError("has another format version");
   State state;
   const std::string names = read_text(h5, "tables");
   for (std::size_t from = 0; from < names.size();) {
@@ -185,6 +236,7 @@ State read_state_file(const Communicator& ranks, const std::filesystem::path& fi
     state.push_back(read_table(ranks, h5, names.substr(from, to - from)));
     from = to + 1;
   }
+  check_input(ranks, h5);
   return state;
 }
 

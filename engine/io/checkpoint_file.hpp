@@ -15,7 +15,8 @@ void write_state_file(const Communicator& ranks, const std::filesystem::path& fi
                       const State& state, const CheckpointManifest& manifest,
                       const std::string& input);
 
-/// Reads a file written by write_state_file; each rank gets its block of keys.
+/// Reads a file written by write_state_file and checks the hash of every dataset; each rank gets
+/// its block of keys.
 /// @throws StorageError or FormatError, on this rank alone. Collective.
 State read_state_file(const Communicator& ranks, const std::filesystem::path& file);
 

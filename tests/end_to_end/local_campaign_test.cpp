@@ -3,6 +3,8 @@
 #include <sys/wait.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 
 #include "base/atomic_file.hpp"
 #include "base/run_contract.hpp"
@@ -40,6 +42,45 @@ TEST_F(LocalCampaign, WalltimeCutsChunksFurtherAndChangesNoBit) {
   expect_undisturbed_result();
   const Store store = Store::open_read_only(root() / Store::kFileName);
   EXPECT_GE(store.chunks(run("towed").id).size(), 2u);
+}
+
+TEST_F(LocalCampaign, ValidateNamesTenMistakesInOnePassAndNoEleventh) {
+  write_atomic(directory_.path() / "broken.yaml", R"(grouser: 1
+campaign: broken
+scheduler: slrum
+resources: {ranks: none}
+case:
+  box: {length: 40 s, width: -12 cm, depth: 10 cm}
+  grains:
+    density: 2650
+    size_curve: [{diameter: 0.4 mm, finer: 0 %}, {diameter: 0.8 mm, finer: 150 %}]
+  contact:
+    rolling: elastic_plastik
+    grain_grain: {restitution: 0, friction: 0.5}
+    grain_box: {restitution: 0.5, friction: 0.5}
+  bed: {depth: twenty cm}
+  grafity: 9.81 m/s2
+)");
+  const auto refused = grouser({"validate", "broken.yaml"});
+  EXPECT_EQ(refused.code, 20);
+  std::multiset<std::string> found;
+  std::istringstream lines(refused.err);
+  for (std::string line; std::getline(lines, line);) {
+    const auto from = line.find("broken.yaml:");
+    const auto to = line.find(": ", line.find(": ") + 2);
+    found.insert(from == std::string::npos ? line : line.substr(from + 12, to - from - 12));
+  }
+  const std::multiset<std::string> expected{"3:12: scheduler",
+                                            "4:20: resources.ranks",
+                                            "6:17: case.box.length",
+                                            "6:30: case.box.width",
+                                            "8:14: case.grains.density",
+                                            "9:76: case.grains.size_curve[1].finer",
+                                            "11:14: case.contact.rolling",
+                                            "12:32: case.contact.grain_grain.restitution",
+                                            "14:16: case.bed.depth",
+                                            "15:12: case.grafity"};
+  EXPECT_EQ(found, expected) << refused.err;
 }
 
 TEST_F(LocalCampaign, SubmittingAgainChangesNothing) {

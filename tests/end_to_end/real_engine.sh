@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The real engine under cuts and kills: the final state must have the bits of the undisturbed run.
 #   real_engine.sh SCENARIO GROUSER GROUSER_ENGINE
-# Scenarios: chunks (ranks 1, 2, 4 x chunks 1, 3, 7), kills (engine killed in mid-chunk),
-# manager (engine and manager killed under a whole campaign), full_disk, truncated,
-# broken (overlap over its limit), signals (SIGTERM and SIGUSR1),
+# Scenarios: chunks (ranks 1, 2, 4 x chunks 1, 3, 7), kills (engine killed in mid-chunk, all of it and
+# one rank alone), manager (killed in mid-submission, and the engines with it), full_disk, truncated,
+# broken (overlap, NaN, lost grain), signals (SIGTERM and SIGUSR1, to ranks and to mpirun),
 # snapshots (VTK's own reader opens them).
 set -euo pipefail
 reader=$(realpath -- "$(dirname -- "${BASH_SOURCE[0]}")/read_vtkhdf.py")
@@ -33,6 +33,7 @@ numerics: {max_overlap: 30 %}
 output: {series_interval: 1 ms, checkpoint_interval: 20 ms}
 YAML
 }
+end_time=0.1625  # of the run that wheel_yaml describes
 wheel_yaml() {
   echo 'wheel: {diameter: 14 cm, width: 6 cm, facets: 60, load: 30 N, settle_time: 40 ms, ramp_time: 5 ms,' \
        'forward_speed: 0.5 m/s, travel: 6 cm, average_travel: 2 cm, drive: towed, start: 0.35}'
@@ -46,20 +47,74 @@ new_run() {  # DIR [wheel]
 }
 
 attempts=0
-launch() {  # RANKS DIR ARGUMENTS...: one attempt; sets $code
-  local ranks=$1 dir=$2 token
+launch() {  # RANKS DIR ARGUMENTS...: one attempt with a log of its own; sets $code and $outcome
+  local ranks=$1 dir=$2 token starter=()
   shift 2
   attempts=$((attempts + 1))
   token=$(printf 'attempt%06d' "$attempts")
   printf '%s' "$token" >"$dir/fence"
+  [ "$ranks" = 1 ] || starter=(mpirun -n "$ranks" --oversubscribe --bind-to none)
   code=0
-  if [ "$ranks" = 1 ]; then
-    "$engine" --run-dir "$dir" --token "$token" "$@" 2>>"$dir/log" || code=$?
-  else
-    mpirun -n "$ranks" --oversubscribe --bind-to none \
-      "$engine" --run-dir "$dir" --token "$token" "$@" 2>>"$dir/log" || code=$?
-  fi
+  "${starter[@]}" "$engine" --run-dir "$work/$dir" --token "$token" "$@" 2>"$dir/log" || code=$?
   outcome=$dir/outcome-$token.json
+}
+
+# The full path of a run directory is in no command line but those of this test's own processes.
+processes_of() {  # DIR NAME [RANK]: mpirun or engines of a run
+  local pid
+  for pid in $(pgrep -f -- "--run-dir $work/$1 "); do
+    [ "$(cat "/proc/$pid/comm" 2>/dev/null)" = "$2" ] || continue
+    if [ -z "${3:-}" ] || grep -qsz "^OMPI_COMM_WORLD_RANK=$3$" "/proc/$pid/environ"; then
+      echo "$pid"
+    fi
+  done
+}
+send() {  # SIGNAL DIR NAME [RANK]
+  local pids
+  pids=$(processes_of "${@:2}")
+  [ -n "$pids" ] || fail "no $3 to send a signal to"
+  # shellcheck disable=SC2086 # one word per process
+  kill "-$1" $pids
+}
+kill_all() { pkill -9 -f -- "--run-dir $work/$1 "; }
+
+newest_step() {  # DIR: step of the newest checkpoint that exists, 0 without one
+  local file newest=0
+  for file in "$1"/checkpoints/step_*.json; do
+    [ -e "$file" ] || continue
+    file=${file##*/step_}
+    file=$((10#${file%%[-.]*}))
+    [ "$file" -le "$newest" ] || newest=$file
+  done
+  echo "$newest"
+}
+
+# An attempt to which COMMAND, a string, is done as soon as it has published a checkpoint of its own
+# behind the first step.
+disturb() {  # COMMAND RANKS DIR ARGUMENTS...
+  local command=$1 before watcher
+  before=$(newest_step "$3")
+  shift
+  (
+    while [ "$(newest_step "$2")" -le "$before" ]; do sleep 0.01; done
+    eval "$command"
+  ) &
+  watcher=$!
+  launch "$@"
+  kill "$watcher" 2>/dev/null || true
+  wait "$watcher" 2>/dev/null || true
+  for _ in $(seq 500); do
+    [ -n "$(processes_of "$2" grouser-engine)" ] || return 0
+    sleep 0.02
+  done
+  fail "engines of $2 are left after their attempt has ended"
+}
+
+# The last attempt must have gone on where a checkpoint lay, not from the beginning.
+expect_continued() {  # DIR STEP
+  local from
+  from=$(sed -n 's/.*app continues from [^ ]* step=\([0-9]*\).*/\1/p' "$1/log")
+  [ "$2" -gt 0 ] && [ "${from:-0}" -ge "$2" ] || fail "$1 went on from '$from' instead of step $2"
 }
 
 hash_of() { sed -n 's/.*"state_hash": "\(.*\)",.*/\1/p' "$outcome"; }
@@ -89,7 +144,7 @@ chunks() {
       local dir=r$ranks-c$count
       new_run "$dir" wheel
       for ((chunk = 1; chunk < count; ++chunk)); do
-        launch "$ranks" "$dir" --bed bed --until-time "$(awk "BEGIN {print 0.1625 * $chunk / $count}")"
+        launch "$ranks" "$dir" --bed bed --until-time "$(awk "BEGIN {print $end_time * $chunk / $count}")"
         [ "$code" = 10 ] || fail "chunk $chunk of $dir ended with $code"
       done
       launch "$ranks" "$dir" --bed bed
@@ -98,26 +153,50 @@ chunks() {
   done
 }
 
-# Kills every engine of this test that runs; returns whether there was one.
-kill_engines() { pkill -9 -f -- "grouser-engine --run-dir $1"; }
+kill_in_mid_chunk() {  # RANKS CHUNKS
+  local ranks=$1 count=$2 dir=killed-r$1-c$2 deaths=0 chunk until
+  new_run "$dir" wheel
+  # Many checkpoints in a chunk; the bits do not depend on them.
+  sed -i 's/checkpoint_interval: 20 ms/checkpoint_interval: 4 ms/' "$dir/case.yaml"
+  for ((chunk = 1; chunk <= count; ++chunk)); do
+    until=(--until-time "$(awk "BEGIN {print $end_time * $chunk / $count}")")
+    [ "$chunk" -lt "$count" ] || until=()
+    code=137
+    if [ $((chunk % 5)) = 1 ]; then
+      disturb "kill_all '$dir'" "$ranks" "$dir" --bed bed "${until[@]}"
+      if [ "$code" = 137 ]; then deaths=$((deaths + 1)); fi
+    fi
+    if [ "$code" = 137 ]; then
+      local at
+      at=$(newest_step "$dir")
+      launch "$ranks" "$dir" --bed bed "${until[@]}"
+      expect_continued "$dir" "$at"
+    fi
+    [ "$chunk" = "$count" ] || [ "$code" = 10 ] || fail "chunk $chunk of $dir ended with $code"
+  done
+  [ "$deaths" -gt 0 ] || fail "no engine was killed on $ranks ranks; the test shows nothing"
+  expect_same "$dir" "$ranks ranks, $count chunks, killed $deaths times in mid-chunk"
+}
 
 kills() {
   prepare
+  local ranks count rank at
   for ranks in 1 2 4; do
-    local dir=killed-$ranks deaths=0
-    new_run "$dir" wheel
-    for delay in 0.2 0.5 0.9 0.4 0.7 1.1; do
-      (sleep "$delay"; kill_engines "$dir") &
-      local killer=$!
-      launch "$ranks" "$dir" --bed bed
-      [ "$code" = 0 ] || deaths=$((deaths + 1))
-      kill "$killer" 2>/dev/null || true
-      wait "$killer" 2>/dev/null || true
-      [ "$code" = 0 ] && break
-    done
-    [ "$deaths" -gt 0 ] || fail "no engine was killed on $ranks ranks; the test shows nothing"
-    if [ "$code" != 0 ]; then launch "$ranks" "$dir" --bed bed; fi
-    expect_same "$dir" "$ranks ranks, killed $deaths times"
+    for count in 1 3 7; do kill_in_mid_chunk "$ranks" "$count"; done
+  done
+  # A rank that dies alone must take the others with it, and harm nothing.
+  for rank in 0 1; do
+    new_run "one-$rank" wheel
+    disturb "send KILL one-$rank grouser-engine $rank" 2 "one-$rank" --bed bed
+    [ "$code" = 137 ] || fail "with rank $rank killed the run ended with $code instead of 137"
+    [ ! -e "$outcome" ] || fail "with rank $rank killed there is an outcome"
+    at=$(newest_step "one-$rank")
+    echo half >"one-$rank/checkpoints/step_000000000001.h5"
+    launch 2 "one-$rank" --bed bed
+    expect_continued "one-$rank" "$at"
+    expect_same "one-$rank" "2 ranks, rank $rank killed at step $at or later"
+    [ "$(ls "one-$rank/checkpoints" | wc -l)" = 4 ] ||
+      fail "beside two checkpoints there is more: $(ls "one-$rank/checkpoints")"
   done
 }
 
@@ -134,22 +213,73 @@ truncated() {
   cmp torn/case.yaml torn/case.copy || fail "the checkpoint does not hold the frozen case"
 }
 
+fill_disk() {  # BYTES: how many are left
+  dd if=/dev/zero of=small/filler bs=1k 2>/dev/null || true
+  truncate -s "-$1" small/filler
+}
+
 full_disk() {
   prepare
   [ "$(id -u)" = 0 ] || { echo "needs root to mount a small file system"; exit 77; }
   mkdir small
   mount -t tmpfs -o size=4m tmpfs small || { echo "cannot mount tmpfs here"; exit 77; }
-  new_run small/run wheel
-  launch 1 small/run --bed bed --until-time 0.05
-  [ "$code" = 10 ] || fail "the first chunk ended with $code: $(tail -n 3 small/run/log)"
-  before=$(ls small/run/checkpoints)
-  dd if=/dev/zero of=small/filler bs=1k 2>/dev/null || true
-  launch 1 small/run --bed bed
-  [ "$code" = 40 ] || fail "on a full disk the engine ended with $code instead of 40"
-  [ "$(ls small/run/checkpoints)" = "$before" ] || fail "the full disk changed the checkpoints"
-  rm small/filler
-  launch 1 small/run --bed bed
-  expect_same small/run "after a full disk"
+  local ranks dir at before
+  for ranks in 1 2; do
+    dir=small/run$ranks
+    new_run "$dir" wheel
+    launch "$ranks" "$dir" --bed bed --until-time 0.05
+    [ "$code" = 10 ] || fail "the first chunk ended with $code: $(tail -n 3 "$dir/log")"
+    at=$(newest_step "$dir")
+    before=$(ls "$dir/checkpoints")
+    # Events, series and progress fit, a checkpoint of half a megabyte does not.
+    fill_disk 300k
+    launch "$ranks" "$dir" --bed bed
+    expect_continued "$dir" "$at"
+    [ "$code" = 40 ] || fail "on a full disk the engine ended with $code instead of 40"
+    grep -q '"reason": "checkpoint at step [0-9]* could not be written: .*bytes of room' "$outcome" ||
+      fail "the outcome does not tell of the full disk: $(cat "$outcome")"
+    [ "$(sed -n 's/.*"reason": "checkpoint at step \([0-9]*\) .*/\1/p' "$outcome")" -gt "$at" ] ||
+      fail "the disk was full before the attempt's first step"
+    [ "$(ls "$dir/checkpoints")" = "$before" ] || fail "the full disk changed the checkpoints"
+    fill_disk 0
+    launch "$ranks" "$dir" --bed bed
+    [ "$code" = 40 ] || fail "without any room the engine ended with $code instead of 40"
+    [ "$(ls "$dir/checkpoints")" = "$before" ] || fail "no room at all changed the checkpoints"
+    rm small/filler
+    launch "$ranks" "$dir" --bed bed
+    expect_continued "$dir" "$at"
+    expect_same "$dir" "after a full disk on $ranks ranks"
+    rm -r "$dir"
+  done
+}
+
+# Lost grains are looked for when lists are made anew, which a restart does: the step may differ.
+verdict() { grep -E '"(reason|state_hash|checkpoint)"' "$outcome" | sed 's/ at step [0-9]*//'; }
+
+# A wheel that stands well and breaks the run once it drives. The last checkpoint before stays and
+# leads to the same breakdown; so do two ranks.
+expect_breakdown() {  # NAME REASON WHEEL
+  local ranks dir kept last=
+  for ranks in 1 2; do
+    dir=$1-$ranks
+    new_run "$dir"
+    sed -i 's/max_overlap: 30 %/max_overlap: 100 %/' "$dir/case.yaml"
+    echo "wheel: {diameter: 14 cm, width: 6 cm, facets: 60, load: 30 N, settle_time: 40 ms," \
+      "ramp_time: 5 ms, start: 0.5, travel: 1 cm, average_travel: 1 cm, $3}" >>"$dir/case.yaml"
+    launch "$ranks" "$dir" --bed bed
+    [ "$code" = 30 ] || fail "$1 on $ranks ranks ended with $code instead of 30"
+    grep -q "\"reason\": \"$2" "$outcome" || fail "$1: the outcome tells of something else"
+    kept=$(ls "$dir/checkpoints")
+    [ "$(newest_step "$dir")" -gt 0 ] || fail "$1 has no checkpoint from before its breakdown"
+    [ "$(verdict)" = "${last:=$(verdict)}" ] || fail "$1 broke in another way on $ranks ranks"
+    launch "$ranks" "$dir" --restart required
+    [ "$code" = 30 ] || fail "$1 did not break a second time, it ended with $code"
+    expect_continued "$dir" "$(newest_step "$dir")"
+    [ "$(verdict)" = "$last" ] ||
+      fail "$1 broke in another way after its last checkpoint"
+    [ "$(ls "$dir/checkpoints")" = "$kept" ] || fail "$1 changed the checkpoints"
+    echo "ended cleanly: $1 on $ranks ranks,$(sed -n 's/.*"reason"://p' "$outcome")"
+  done
 }
 
 broken() {
@@ -165,28 +295,52 @@ broken() {
   sed -i 's/max_overlap: 0.01 %/max_overlap: 30 %/' soft/case.yaml
   launch 1 soft --bed bed
   expect_same soft "after a breakdown"
+  # The square of this speed is not a number any more.
+  expect_breakdown nan 'a force or velocity is not a number' \
+    'forward_speed: 0.1 m/s, drive: rim_speed, rim_speed: 1e200 m/s'
+  # Grains fly over walls and headroom.
+  expect_breakdown lost 'a grain has left the box' \
+    'forward_speed: 0.03 m/s, drive: rim_speed, rim_speed: 25 m/s'
+}
+
+expect_paused_by() {  # COMMAND RANKS DIR CODE: the code of what the run was started with
+  disturb "$1" "$2" "$3" --bed bed
+  [ "$code" = "$4" ] || fail "after '$1' on $2 ranks the code was $code instead of $4"
+  grep -q '"code": 10' "$outcome" || fail "the outcome of '$1' is not code 10: $(cat "$outcome")"
+  grep -q '"by_signal": true' "$outcome" || fail "the outcome does not name the signal of '$1'"
+  [ "$(sed -n 's/.*"step": \([0-9]*\).*/\1/p' "$outcome")" = "$(newest_step "$3")" ] ||
+    fail "after '$1' the last step has no checkpoint"
 }
 
 signals() {
   prepare
   new_run told wheel
+  # Each signal comes after a checkpoint of its attempt, and the run is to last for all of them.
+  sed -i 's/checkpoint_interval: 20 ms/checkpoint_interval: 4 ms/' told/case.yaml
   launch 1 told --bed bed --restart required
   [ "$code" = 21 ] || fail "--restart required without a checkpoint ended with $code"
   for signal in TERM USR1; do
-    (sleep 0.4; pkill "-$signal" -f -- "grouser-engine --run-dir told") &
-    launch 1 told --bed bed --restart auto
-    wait
-    [ "$code" = 10 ] || fail "after SIG$signal the engine ended with $code instead of 10"
-    grep -q '"by_signal": true' "$outcome" || fail "the outcome does not name the signal"
+    expect_paused_by "send $signal told grouser-engine" 1 told 10
+    for rank in 0 1; do
+      expect_paused_by "send $signal told grouser-engine $rank" 2 told 10
+    done
   done
-  launch 1 told --restart required --max-seconds 2
+  # mpirun hands SIGUSR1 on and reports its ranks' code. SIGTERM it hands on after a second, kills
+  # what is left after another, and reports 1: this run lasts long enough to be met by it.
+  expect_paused_by "send USR1 told mpirun" 2 told 10
+  new_run slow wheel
+  sed -i 's/forward_speed: 0.5/forward_speed: 0.05/' slow/case.yaml
+  expect_paused_by "send TERM slow mpirun" 2 slow 1
+  expect_paused_by "send TERM slow grouser-engine" 1 slow 10
+  expect_continued slow 1
+  launch 1 told --restart required --max-seconds 1
   [ "$code" = 10 ] || fail "with --max-seconds the engine ended with $code instead of 10"
   touch told/stop
   launch 1 told
   [ "$code" = 12 ] || fail "with a stop file the engine ended with $code instead of 12"
   rm told/stop
   launch 1 told
-  expect_same told "after two signals, --max-seconds and a stop file"
+  expect_same told "after seven signals, --max-seconds and a stop file"
 }
 
 snapshots() {
@@ -214,39 +368,63 @@ snapshots() {
   [ "$count" = 6 ] || fail "$count snapshots instead of 6"
 }
 
-campaign_yaml() {
-  printf 'grouser: 1\ncampaign: small\nscheduler: local\nresources: {ranks: %s}\nchunks: {count: 3}\n' "$1"
-  printf 'retries: {infrastructure: 50}\ncase:\n'
-  { case_yaml; wheel_yaml; } | sed 's/^/  /'
-  printf 'sweep:\n  - axis: slip\n    points:\n      - {label: towed, set: {wheel.drive: towed}}\n'
-  printf '      - {label: slip20, set: {wheel.drive: slip, wheel.slip: 20 %%}}\n'
+campaign_yaml() {  # RANKS CHUNKS
+  printf 'grouser: 1\ncampaign: small\nscheduler: local\nresources: {ranks: %s}\n' "$1"
+  printf 'chunks: {count: %s}\nretries: {infrastructure: 50}\ncase:\n' "$2"
+  # Small and short: there are many of them.
+  { case_yaml; wheel_yaml; } | sed 's/checkpoint_interval: 20 ms/checkpoint_interval: 4 ms/
+    s/width: 16 cm/width: 9 cm/; s/travel: 6 cm/travel: 3 cm/; s/^/  /'
 }
 
 final_hashes() { "$grouser" query -C "$1" "SELECT label, state_hash FROM v_runs ORDER BY label"; }
 
+submit() {  # ROOT
+  "$grouser" submit campaign.yaml --root "$1" --every 0.05 --grace 0.5 >log 2>&1
+}
+
+# Kills the engines of a campaign when its run has a checkpoint behind the first step.
+kill_driving() {  # ROOT
+  until grep -qs '"step": [1-9]' "$1"/runs/*/checkpoints/step_*.json &&
+    pkill -9 -f -- "grouser-engine --run-dir $work/$1/runs/"; do
+    sleep 0.02
+  done
+}
+
+# Managers that die at the places of a submission, one after the other, on all ranks and chunks.
 manager() {
   export GROUSER_ENGINE=$engine
-  for ranks in 1 2; do
-    campaign_yaml "$ranks" >"campaign$ranks.yaml"
-    "$grouser" submit "campaign$ranks.yaml" --root "calm$ranks" >calm.log 2>&1 ||
-      fail "undisturbed campaign: $(tail -n 5 calm.log)"
-    local deaths=0
-    for delay in 0.3 1.1 0.7 1.9 1.3 2.2; do
-      "$grouser" submit "campaign$ranks.yaml" --root "killed$ranks" --every 0.1 >killed.log 2>&1 &
-      local pid=$!
-      sleep "$delay"
-      kill -9 "$pid" 2>/dev/null && deaths=$((deaths + 1))
-      wait "$pid" 2>/dev/null || true
-      kill_engines "$work/killed$ranks" || true
+  campaign_yaml 1 1 >campaign.yaml
+  submit calm || fail "undisturbed campaign: $(tail -n 5 log)"
+  expected=$(final_hashes calm)
+  local first=(after_directories after_runs after_cancels)
+  # Before these places nothing has come of a submission, so the next manager does it again ...
+  local before=(after_tx1 after_fence after_script before_settle)
+  # ... behind these it has: the next manager dies one submission further on.
+  local behind=(after_submit after_tx2 after_settle)
+  local number=0 ranks count root place killer places
+  for ranks in 1 2 4; do
+    for count in 1 3 7; do
+      root=killed-r$ranks-c$count
+      campaign_yaml "$ranks" "$count" >campaign.yaml
+      places=("${first[number % 3]}" "${behind[number % 3]}" "${before[number % 4]}"
+        "${behind[number % 3]}")
+      # A run of one chunk has nothing more to submit.
+      [ "$count" = 1 ] || places+=("${before[number % 4]}")
+      number=$((number + 1))
+      for place in "${places[@]}"; do
+        code=0
+        GROUSER_FAULT=$place submit "$root" || code=$?
+        [ "$code" = 137 ] || fail "the manager did not die at $place: $(tail -n 5 log)"
+      done
+      kill_driving "$root" &
+      killer=$!
+      submit "$root" || fail "disturbed campaign: $(tail -n 5 log)"
+      kill "$killer" 2>/dev/null && fail "no engine of $root was killed; the test shows nothing"
+      wait "$killer" || true
+      [ "$(final_hashes "$root")" = "$expected" ] || fail "the disturbed campaign has other bits"
+      echo "same bits: campaign on $ranks ranks in $count chunks, managers killed ${places[*]}"
     done
-    [ "$deaths" -ge 3 ] || fail "only $deaths managers were killed; the test shows little"
-    "$grouser" submit "campaign$ranks.yaml" --root "killed$ranks" --every 0.1 >killed.log 2>&1 ||
-      fail "disturbed campaign: $(tail -n 5 killed.log)"
-    [ "$(final_hashes "calm$ranks")" = "$(final_hashes "killed$ranks")" ] ||
-      fail "the disturbed campaign has other bits"
-    echo "same bits: campaign on $ranks ranks, $deaths managers killed"
   done
-  [ "$(final_hashes calm1)" = "$(final_hashes calm2)" ] || fail "1 and 2 ranks differ"
 }
 
 "$scenario"

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "base/errors.hpp"
 #include "base/hash.hpp"
@@ -135,6 +136,95 @@ TEST(Checkpoint, OnlyTheNewestAreKept) {
   store.retain(2);
   EXPECT_EQ(std::distance(fs::directory_iterator(directory), fs::directory_iterator()), 4);
   EXPECT_EQ(store.load_newest("key")->manifest.step, 5);
+}
+
+std::set<std::string> names_in(const fs::path& directory) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(directory))
+    names.insert(entry.path().filename().string());
+  return names;
+}
+
+TEST(Checkpoint, WhatAKilledAttemptLeftIsRemovedAndNothingElse) {
+  const Communicator ranks;
+  const fs::path directory = fresh_directory("leftovers");
+  CheckpointStore before(ranks, directory);
+  const auto kept = write(before, 1.0, 10);
+  const auto damaged = write(before, 2.0, 20);
+  const auto touch = [&](const char* name) {
+    if (ranks.rank() == 0) std::ofstream(directory / name) << "half";
+  };
+  if (ranks.rank() == 0)
+    fs::rename(directory / fs::path(damaged->file).replace_extension(".json"),
+               directory / fs::path(damaged->file).replace_extension(".bad"));
+  touch("step_000000000030.h5");
+  touch("step_000000000030-1.h5");
+  touch("step_000000000025.json.tmp-4711-0");
+  touch(".room-4711");
+  touch("notes.h5");  // not the engine's
+  ranks.barrier();
+  CheckpointStore owner(ranks, directory);
+  ranks.barrier();
+  // One of them gets its manifest late; another writer begins a file after the owner's start.
+  touch("step_000000000030-1.json");
+  touch("step_000000000040.h5");
+  ranks.barrier();
+  owner.remove_leftovers();
+  const std::string ten = fs::path(kept->file).stem().string();
+  const std::string twenty = fs::path(damaged->file).stem().string();
+  const std::set<std::string> expected{ten + ".h5",
+                                       ten + ".json",
+                                       twenty + ".h5",
+                                       twenty + ".bad",
+                                       "step_000000000030-1.h5",
+                                       "step_000000000030-1.json",
+                                       "notes.h5",
+                                       "step_000000000040.h5"};
+  EXPECT_EQ(names_in(directory), expected);
+  ranks.barrier();
+}
+
+// Turns one bit of the first place where `bytes` stand in the file.
+void flip_bit_at(const fs::path& file, const std::string& bytes) {
+  std::ifstream in(file, std::ios::binary);
+  std::string content(std::istreambuf_iterator<char>(in), {});
+  const std::size_t place = content.find(bytes);
+  ASSERT_NE(place, std::string::npos);
+  content[place] = static_cast<char>(content[place] ^ 0x10);
+  std::ofstream(file, std::ios::binary) << content;
+}
+
+std::string why_refused(const Communicator& ranks, const fs::path& directory,
+                        const CheckpointManifest& manifest) {
+  try {
+    read_checkpoint(ranks, directory, manifest);
+  } catch (const FormatError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Checkpoint, NamesTheDatasetWhoseBitFlipped) {
+  const Communicator ranks;
+  const fs::path directory = fresh_directory("dataset");
+  CheckpointStore store(ranks, directory, "gravity: 9.81 m/s2\n");
+  const auto first = write(store, 1.0 / 3.0, 10);
+  const auto second = write(store, 1.0 / 3.0, 20);
+  EXPECT_EQ(why_refused(ranks, directory, *first), "");
+  const double x = 1.0 / 3.0 * 998.0;
+  const double row[3] = {x, -x, 0.1 * x};
+  if (ranks.rank() == 0) {
+    flip_bit_at(directory / first->file,
+                std::string(reinterpret_cast<const char*>(row), sizeof row));
+    flip_bit_at(directory / second->file, "gravity");
+  }
+  ranks.barrier();
+  EXPECT_EQ(why_refused(ranks, directory, *first),
+            (directory / first->file).string() +
+                ": dataset /grains/position does not have the hash written with it");
+  EXPECT_EQ(why_refused(ranks, directory, *second),
+            (directory / second->file).string() +
+                ": dataset /case does not have the hash written with it");
 }
 
 TEST(Checkpoint, ADiskThatFillsUpInTheMiddleKeepsThePrevious) {

@@ -210,6 +210,70 @@ TEST(Oracle, ListsAndCellsGiveTheBitsOfBruteForce) {
   }
 }
 
+TEST(Oracle, BoxAndWheelGiveTheBitsOfALoopOverAllFacets) {
+  WorldSettings settings = small_settings();
+  settings.rolling = "elastic_plastic";
+  settings.time_step = 1e-5;
+  std::vector<Particle> grains = loose_column(100, 4);
+  // They come down on a wheel that drives and turns, slide off it and reach walls and floor.
+  for (Particle& p : grains) {
+    p.position.z += 0.095;
+    p.velocity.z -= 2.5;
+    p.velocity.x += 40.0 * (p.position.x - 0.05);
+  }
+  WheelCase wheel;
+  wheel.profile = "grousers";
+  wheel.diameter = 0.07;
+  wheel.width = 0.05;
+  wheel.facets = 36;
+  wheel.grousers = 9;
+  wheel.grouser_height = 0.006;
+  wheel.grouser_width = 0.003;
+  const Surface box_surface{0.5, 0.4, 0.05};
+  const Surface wheel_surface{0.5, 0.6, 0.1};
+  BodyMotion motion;
+  motion.position = {0.045, 0.05, 0.05};
+  motion.velocity = {0.1, 0.0, -0.05};
+  motion.spin = 25.0;
+
+  World world{Communicator(), settings};
+  add_box(world, box_surface);
+  world.add_body("wheel", wheel_mesh(wheel), kTestSolid, wheel_surface, true);
+  for (const Particle& p : grains)
+    if (p.id % Communicator().size() == Communicator().rank()) world.add_particle(p);
+  ReferenceWorld oracle(grains, settings.grain, settings.grain_grain, settings.gravity,
+                        settings.time_step);
+  oracle.add_body(box_mesh(settings.high.x, settings.high.y, settings.high.z), kTestSolid,
+                  box_surface);
+  oracle.add_body(wheel_mesh(wheel), kTestSolid, wheel_surface);
+  std::size_t most = 0;
+  std::size_t at_edges = 0;
+  bool reached_floor = false;
+  for (int i = 0; i < 4000; ++i) {
+    world.body(1).motion = oracle.motion(1) = motion;
+    ASSERT_EQ(world.step().fault, Fault::kNone);
+    oracle.step();
+    motion.position += settings.time_step * motion.velocity;
+    motion.angle += settings.time_step * motion.spin;
+    for (std::size_t body = 0; body < 2; ++body)
+      ASSERT_EQ(world.load(body).force_z.value(), oracle.force_z(body).value())
+          << "body " << body << " step " << i;
+    most = std::max(most, oracle.touches());
+    at_edges += oracle.edge_touches();
+    reached_floor = reached_floor || oracle.force_z(0).value() < -1.0;
+  }
+  EXPECT_GT(most, 12u);
+  EXPECT_GT(at_edges, 1000u);
+  EXPECT_TRUE(reached_floor);
+  for (std::size_t i = 0; i < world.owned(); ++i) {
+    const Particle& p = world.particles()[i];
+    const Particle& q = oracle.grains()[static_cast<std::size_t>(p.id)];
+    ASSERT_EQ(p.position, q.position) << "grain " << p.id;
+    ASSERT_EQ(p.velocity, q.velocity);
+    ASSERT_EQ(p.spin, q.spin);
+  }
+}
+
 TEST(Faults, ANanIsAgreedByAllRanks) {
   World world = rain(Communicator(), 1e-3, 9);
   State state;
