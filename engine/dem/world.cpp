@@ -66,9 +66,7 @@ void World::reserve(std::size_t count) {
 }
 
 World::StepResult World::step(double request) {
-  bool lost = false;
   if (must_rebuild_) {
-    lost = has_lost_particle();
     rebuild();
   } else {
     halo_.update(ranks_, particles_);
@@ -101,8 +99,8 @@ World::StepResult World::step(double request) {
                                              move(first, last, forces, moments, motion);
                                            }));
   totals.sums.emplace_back().add(std::isfinite(motion.sum) ? motion.sum : 0.0);
-  totals.maxima = {std::sqrt(motion.fastest2), std::sqrt(motion.slow2), overlap, lost ? 1.0 : 0.0,
-                   request};
+  totals.maxima = {std::sqrt(motion.fastest2), std::sqrt(motion.slow2), overlap,
+                   motion.is_lost ? 1.0 : 0.0, request};
   ranks_.combine(totals);
   for (std::size_t b = 0; b < bodies_.size(); ++b)
     loads_[b] = {totals.sums[5 * b], totals.sums[5 * b + 1], totals.sums[5 * b + 2],
@@ -130,6 +128,8 @@ World::StepResult World::step(double request) {
 void World::move(std::size_t first, std::size_t last, const double* forces, const double* moments,
                  Motion& motion) {
   const double dt = settings_.time_step;
+  const Vec3 low = settings_.low;
+  const Vec3 high = settings_.high;
   for (std::size_t i = first; i < last; ++i, forces += 4, moments += 4) {
     Particle& p = particles_[i];
     Vec3 force{forces[0], forces[1], forces[2]};
@@ -147,6 +147,9 @@ void World::move(std::size_t first, std::size_t last, const double* forces, cons
     p.velocity += gain;
     p.position += dt * p.velocity;
     p.spin += (dt / (kSphereInertia * p.mass * p.radius * p.radius)) * moment;
+    const Vec3& at = p.position;
+    motion.is_lost |= !((at.x >= low.x) & (at.y >= low.y) & (at.z >= low.z) & (at.x <= high.x) &
+                        (at.y <= high.y) & (at.z <= high.z));
     const double speed2 = norm2(p.velocity);
     motion.sum += std::abs(p.velocity.x) + std::abs(p.velocity.y) + std::abs(p.velocity.z);
     // The comparison is written so that a NaN takes over and stays.
@@ -161,18 +164,6 @@ double World::displacement() const {
   for (std::size_t i = 0; i < owned_; ++i)
     largest2 = std::max(largest2, norm2(particles_[i].position - built_at_[i].position()));
   return std::sqrt(largest2) + rounding_;
-}
-
-bool World::has_lost_particle() const {
-  const Vec3& low = settings_.low;
-  const Vec3& high = settings_.high;
-  for (std::size_t i = 0; i < owned_; ++i) {
-    const Vec3& at = particles_[i].position;
-    if (!(at.x >= low.x && at.y >= low.y && at.z >= low.z && at.x <= high.x && at.y <= high.y &&
-          at.z <= high.z))
-      return true;
-  }
-  return false;
 }
 
 double World::kinetic_energy() const {

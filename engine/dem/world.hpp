@@ -117,6 +117,7 @@ class World : public Stateful {
   struct Motion {
     double fastest2 = 0.0;               // largest squared speed
     double slow2 = 0.0;                  // of those that are not fast
+    bool is_lost = false;                // a grain has left the region, or is nowhere
     double sum = 0.0;                    // of |vx| + |vy| + |vz|
     std::vector<std::size_t> next_push;  // of each body
   };
@@ -129,7 +130,6 @@ class World : public Stateful {
   void move(std::size_t first, std::size_t last, const double* forces, const double* moments,
             Motion& motion);
   double displacement() const;
-  bool has_lost_particle() const;
   void load_particles(const State& state);
   void load_contacts(const State& state);
 

@@ -123,7 +123,7 @@ class ReferenceWorld {
       const auto corner = [&](std::size_t k) {
         return mesh.vertices[static_cast<std::size_t>(mesh.facets[f][k])];
       };
-      const NearestPoint near = nearest_on_triangle(centre, corner(0), corner(1), corner(2));
+      const NearestPoint near = nearest_on_triangle(centre, {corner(0), corner(1), corner(2)});
       const double distance = norm(centre - near.point);
       if (distance < radius)
         all.push_back({static_cast<int>(f), near.point, distance, near.feature, {}});
