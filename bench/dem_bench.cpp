@@ -126,11 +126,12 @@ void write_start(const fs::path& directory, const Case& input, std::vector<Parti
 void export_bed(const Communicator& ranks, const fs::path& directory) {
   const Case input = read_bench_case(directory);
   CheckpointStore store(ranks, directory / run_files::kCheckpoints);
-  const auto loaded = store.load_newest(content_key(input));
-  if (!loaded || !loaded->manifest.settled_bed)
-    throw FormatError("no settled bed in " + directory.string());
+  const auto found = store.find_newest(content_key(input));
+  if (!found || !found->settled_bed) throw FormatError("no settled bed in " + directory.string());
   World world = bench_world(ranks, input);
-  world.load_state(loaded->state);
+  world.begin_load();
+  store.read(*found, [&](const StateTable& rows) { world.load_rows(rows); });
+  world.end_load();
   write_start(directory, input, gather(world), 0.0);
 }
 

@@ -25,6 +25,8 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kSettleCheckSteps = 50;
 constexpr std::size_t kKeptCheckpoints = 2;
+// Table of what this class itself must remember.
+constexpr const char* kOwnTable = "run";
 // Wall seconds that an ending attempt needs beside its checkpoint.
 constexpr double kFinaliseSeconds = 1.0;
 
@@ -88,9 +90,8 @@ Run::Run(const Communicator& ranks, const EngineOptions& options, const Case& in
 
   on_first_rank(ranks_,
                 [&] { fs::create_directories(options_.run_directory / run_files::kEvents); });
-  const auto loaded = checkpoints_.load_newest(key_);
-  if (loaded) {
-    resume(*loaded);
+  if (const auto found = checkpoints_.find_newest(key_)) {
+    resume(*found);
   } else if (options_.must_continue) {
     throw FormatError("no checkpoint of this case in " +
                       (options_.run_directory / run_files::kCheckpoints).string());
@@ -124,21 +125,28 @@ void Run::begin_from_bed() {
     throw ConfigError({Problem{"", 0, 0, "--bed", "is needed to start a run with a wheel",
                                "give the run directory of the settled bed"}});
   CheckpointStore bed(ranks_, options_.bed / run_files::kCheckpoints);
-  const auto loaded = bed.load_newest(bed_key);
-  if (!loaded || !loaded->manifest.settled_bed)
+  const auto found = bed.find_newest(bed_key);
+  if (!found || !found->settled_bed)
     throw FormatError("no settled bed with key " + bed_key + " in " + options_.bed.string());
-  world_.load_state(loaded->state);
+  world_.begin_load();
+  bed.read(*found, [&](const StateTable& rows) { world_.load_rows(rows); });
+  world_.end_load();
   world_.reset_origins();
   wheel_->place();
-  spdlog::info("app bed taken from {} step={}", loaded->manifest.file, loaded->manifest.step);
+  spdlog::info("app bed taken from {} step={}", found->file, found->step);
 }
 
-void Run::resume(const CheckpointStore::Loaded& loaded) {
-  world_.load_state(loaded.state);
-  if (wheel_) wheel_->load_state(loaded.state);
-  max_overlap_ = first_row(ranks_, table_of(loaded.state, "run")).at(0);
-  newest_ = loaded.manifest;
-  step_ = loaded.manifest.step;
+void Run::resume(const CheckpointManifest& manifest) {
+  std::vector<Stateful*> modules{&world_};
+  if (wheel_) modules.push_back(wheel_.get());
+  for (Stateful* module : modules) module->begin_load();
+  checkpoints_.read(manifest, [&](const StateTable& rows) {
+    for (Stateful* module : modules) module->load_rows(rows);
+    if (rows.name == kOwnTable) max_overlap_ = first_row(ranks_, rows).at(0);
+  });
+  for (Stateful* module : modules) module->end_load();
+  newest_ = manifest;
+  step_ = manifest.step;
   spdlog::info("app continues from {} step={} time={} s", newest_.file, step_, time());
 }
 
@@ -263,20 +271,24 @@ EngineCode Run::end_by_request(double request) {
   return request >= kStop ? EngineCode::kStopped : EngineCode::kPaused;
 }
 
-bool Run::write_checkpoint(bool settled) {
-  const double from = elapsed();
+State Run::state(const StatePiece& piece) const {
   State state;
-  world_.save_state(state);
-  if (wheel_) wheel_->save_state(state);
+  world_.save_state(state, piece);
+  if (wheel_) wheel_->save_state(state, piece);
   StateTable own;
-  own.name = "run";
-  own.key_count = 1;
+  own.name = kOwnTable;
+  own.key_count = own.all_rows = 1;
   own.real_fields = {{"max_overlap", "1", 1}};
-  if (ranks_.rank() == 0) {
+  if (ranks_.rank() == 0 && piece.has(0, 1)) {
     own.integers = {0, 0};
     own.reals = {max_overlap_};
   }
   state.push_back(std::move(own));
+  return state;
+}
+
+bool Run::write_checkpoint(bool settled) {
+  const double from = elapsed();
   CheckpointManifest manifest;
   manifest.case_key = key_;
   manifest.step = step_;
@@ -294,14 +306,16 @@ bool Run::write_checkpoint(bool settled) {
     return false;
   }
   checkpoints_.remove_leftovers();  // before the write, which may need their room
-  const auto written = checkpoints_.write(std::move(state), manifest, [&] {
-    try {
-      return owns_fence();
-    } catch (const StorageError& error) {
-      spdlog::error("app {}", error.what());
-      return false;
-    }
-  });
+  const auto written = checkpoints_.write([&](const StatePiece& piece) { return state(piece); },
+                                          checkpoints_.pieces_for(particles_), manifest,
+                                          [&] {
+                                            try {
+                                              return owns_fence();
+                                            } catch (const StorageError& error) {
+                                              spdlog::error("app {}", error.what());
+                                              return false;
+                                            }
+                                          });
   if (!written) {
     reason_ = "another attempt owns the run";
     return false;

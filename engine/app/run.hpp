@@ -45,7 +45,8 @@ class Run {
  private:
   void begin();
   void begin_from_bed();
-  void resume(const CheckpointStore::Loaded& loaded);
+  void resume(const CheckpointManifest& manifest);
+  State state(const StatePiece& piece) const;
   bool owns_fence() const;
 
   bool is_done() const;

@@ -12,21 +12,24 @@
 namespace grouser {
 namespace {
 
-int rank_of_key(std::int64_t key, std::int64_t key_count, int ranks) {
-  auto guess = static_cast<int>(key * ranks / std::max<std::int64_t>(key_count, 1));
-  while (guess + 1 < ranks && key >= first_key(key_count, ranks, guess + 1)) ++guess;
-  while (guess > 0 && key < first_key(key_count, ranks, guess)) --guess;
+// Block of `count` that has the key-th of `keys`.
+int block_of(std::int64_t key, std::int64_t keys, int count) {
+  auto guess = static_cast<int>(key * count / std::max<std::int64_t>(keys, 1));
+  while (guess + 1 < count && key >= first_key(keys, count, guess + 1)) ++guess;
+  while (guess > 0 && key < first_key(keys, count, guess)) --guess;
   return guess;
 }
 
-std::vector<Bytes> pack_by_key(const StateTable& table, int ranks) {
+std::vector<Bytes> pack_by_key(const StateTable& table, int ranks, const StatePiece& piece) {
   std::vector<Bytes> out(static_cast<std::size_t>(ranks));
   const std::size_t iw = table.integer_width();
   const std::size_t rw = table.real_width();
+  const std::int64_t begin = piece.begin(table.key_count);
+  const std::int64_t keys = piece.end(table.key_count) - begin;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const std::int64_t* integers = &table.integers[row * iw];
-    GROUSER_CHECK(integers[0] >= 0 && integers[0] < table.key_count);
-    Bytes& to = out[static_cast<std::size_t>(rank_of_key(integers[0], table.key_count, ranks))];
+    GROUSER_CHECK(piece.has(integers[0], table.key_count));
+    Bytes& to = out[static_cast<std::size_t>(block_of(integers[0] - begin, keys, ranks))];
     append_bytes(to, integers, iw);
     append_bytes(to, table.reals.data() + row * rw, rw);
   }
@@ -61,33 +64,39 @@ std::vector<double> first_row(const Communicator& ranks, const StateTable& table
   return totals.maxima;
 }
 
-std::uint64_t hash_table(const Communicator& ranks, const StateTable& table) {
-  const std::size_t iw = table.integer_width();
-  const std::size_t rw = table.real_width();
-  const std::uint64_t seed = hash_bytes(table.name.data(), table.name.size());
-  std::uint64_t local = 0;  // a sum, because rows come in any order
-  for (std::size_t row = 0; row < table.rows(); ++row) {
+void StateHash::add(const StateTable& rows) {
+  const std::size_t iw = rows.integer_width();
+  const std::size_t rw = rows.real_width();
+  const std::uint64_t seed = hash_bytes(rows.name.data(), rows.name.size());
+  tables_[rows.name] = seed;
+  for (std::size_t row = 0; row < rows.rows(); ++row) {
     const std::uint64_t integers =
-        hash_bytes(&table.integers[row * iw], iw * sizeof(std::int64_t), seed);
-    local += hash_bytes(table.reals.data() + row * rw, rw * sizeof(double), integers);
+        hash_bytes(&rows.integers[row * iw], iw * sizeof(std::int64_t), seed);
+    // A sum, because rows come in any order.
+    rows_ += hash_bytes(rows.reals.data() + row * rw, rw * sizeof(double), integers);
   }
-  return ranks.wrap_sum(local) + seed;
 }
 
-std::uint64_t hash_state(const Communicator& ranks, const State& state) {
-  std::uint64_t all = 0;
-  for (const StateTable& table : state) all += hash_table(ranks, table);
+std::uint64_t StateHash::value(const Communicator& ranks) const {
+  std::uint64_t all = ranks.wrap_sum(rows_);
+  for (const auto& [name, seed] : tables_) all += seed;
   return all;
 }
 
-std::int64_t first_key(std::int64_t key_count, int ranks, int rank) {
-  return key_count / ranks * rank + std::min<std::int64_t>(rank, key_count % ranks);
+std::uint64_t hash_state(const Communicator& ranks, const State& state) {
+  StateHash hash;
+  for (const StateTable& table : state) hash.add(table);
+  return hash.value(ranks);
 }
 
-void sort_rows(const Communicator& ranks, StateTable& table) {
+std::int64_t first_key(std::int64_t key_count, std::int64_t count, std::int64_t index) {
+  return key_count / count * index + std::min(index, key_count % count);
+}
+
+void sort_rows(const Communicator& ranks, StateTable& table, const StatePiece& piece) {
   const std::size_t iw = table.integer_width();
   const std::size_t rw = table.real_width();
-  const std::vector<Bytes> in = ranks.exchange_all(pack_by_key(table, ranks.size()));
+  const std::vector<Bytes> in = ranks.exchange_all(pack_by_key(table, ranks.size(), piece));
   std::vector<std::int64_t> integers;
   std::vector<double> reals;
   for (const Bytes& message : in) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -86,8 +87,10 @@ class World : public Stateful {
   const Communicator& ranks() const { return ranks_; }
   const WorldSettings& settings() const { return settings_; }
 
-  void save_state(State& state) const override;
-  void load_state(const State& state) override;
+  void save_state(State& state, const StatePiece& piece = {}) const override;
+  void begin_load() override;
+  void load_rows(const StateTable& rows) override;
+  void end_load() override;
 
  private:
   // A grain that comes from another rank, with its histories.
@@ -130,8 +133,11 @@ class World : public Stateful {
   void move(std::size_t first, std::size_t last, const double* forces, const double* moments,
             Motion& motion);
   double displacement() const;
-  void load_particles(const State& state);
-  void load_contacts(const State& state);
+  std::optional<std::uint32_t> loaded_grain(std::int64_t id) const;
+  void load_particles(StateTable rows);
+  void load_pairs(const StateTable& rows);
+  void load_touches(StateTable rows);
+  void load_bodies(const StateTable& rows);
 
   Communicator ranks_;
   WorldSettings settings_;
@@ -147,6 +153,7 @@ class World : public Stateful {
   std::int64_t count_ = 0;       // of grains on all ranks
   std::vector<Place> built_at_;  // where grains were when the list was made
   double rounding_ = 0.0;        // bound of what a Place leaves out [m]
+  std::string load_failure_;     // what is wrong with rows that came to this rank
   bool must_rebuild_ = true;
   double moved_ = 0.0;       // bound of grain displacement since then [m]
   double near_moved_ = 0.0;  // bound of grain against body displacement since find_near [m]

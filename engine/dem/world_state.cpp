@@ -37,12 +37,14 @@ StateTable body_table() {
 
 }  // namespace
 
-void World::save_state(State& state) const {
+void World::save_state(State& state, const StatePiece& piece) const {
   const std::int64_t total = particle_count();
   StateTable grains = particle_table();
   grains.key_count = total;
+  grains.all_rows = total;
   for (std::size_t i = 0; i < owned_; ++i) {
     const Particle& p = particles_[i];
+    if (!piece.has(p.id, total)) continue;
     grains.integers.insert(grains.integers.end(), {p.id, 0});
     push(grains.reals, p.position);
     push(grains.reals, p.velocity);
@@ -55,29 +57,41 @@ void World::save_state(State& state) const {
   contacts.name = "contacts";
   contacts.key_count = total;
   contacts.real_fields = pairs_.history_fields();
+  std::int64_t rows = 0;
+  pairs_.each_history(
+      particles_, [&](std::uint32_t grain, std::int64_t other, const double* values) {
+        ++rows;
+        const std::int64_t id = particles_[grain].id;
+        if (!piece.has(id, total)) return;
+        contacts.integers.insert(contacts.integers.end(), {id, other});
+        contacts.reals.insert(contacts.reals.end(), values, values + pairs_.history_width());
+      });
+  contacts.all_rows = ranks_.sum(rows);
+
   StateTable touches;
   touches.name = "body_contacts";
   touches.key_count = total;
   touches.real_fields = contacts.real_fields;
-  pairs_.each_history(
-      particles_, [&](std::uint32_t grain, std::int64_t other, const double* values) {
-        contacts.integers.insert(contacts.integers.end(), {particles_[grain].id, other});
-        contacts.reals.insert(contacts.reals.end(), values, values + pairs_.history_width());
-      });
+  rows = 0;
   for (std::size_t b = 0; b < body_contacts_.size(); ++b) {
     const BodyContacts& on_body = body_contacts_[b];
+    rows += static_cast<std::int64_t>(on_body.count());
     for (std::size_t t = 0; t < on_body.count(); ++t) {
       const BodyContacts::Touch& touch = on_body.touches()[t];
+      const std::int64_t id = particles_[touch.particle].id;
+      if (!piece.has(id, total)) continue;
       const std::int64_t place = (static_cast<std::int64_t>(b) << kFacetBits) | touch.facet;
-      touches.integers.insert(touches.integers.end(), {particles_[touch.particle].id, place});
+      touches.integers.insert(touches.integers.end(), {id, place});
       touches.reals.insert(touches.reals.end(), on_body.history(t),
                            on_body.history(t) + on_body.history_width());
     }
   }
+  touches.all_rows = ranks_.sum(rows);
 
   StateTable bodies = body_table();
-  bodies.key_count = static_cast<std::int64_t>(bodies_.size());
+  bodies.key_count = bodies.all_rows = static_cast<std::int64_t>(bodies_.size());
   for (std::size_t b = 0; b < bodies_.size() && ranks_.rank() == 0; ++b) {
+    if (!piece.has(static_cast<std::int64_t>(b), bodies.key_count)) continue;
     const BodyMotion& m = bodies_[b].motion;
     bodies.integers.insert(bodies.integers.end(), {static_cast<std::int64_t>(b), 0});
     push(bodies.reals, m.position);
@@ -88,73 +102,101 @@ void World::save_state(State& state) const {
     state.push_back(std::move(*table));
 }
 
-void World::load_particles(const State& state) {
-  StateTable grains = table_of(state, "particles");
-  sort_rows(ranks_, grains);
+void World::begin_load() {
   particles_.clear();
   origins_.clear();
-  const double* from = grains.reals.data();
-  for (std::size_t row = 0; row < grains.rows(); ++row) {
+  owned_ = 0;
+  pairs_.forget();
+  for (BodyContacts& on_body : body_contacts_) on_body.forget();
+  load_failure_.clear();
+  must_rebuild_ = true;
+}
+
+void World::load_rows(const StateTable& rows) {
+  if (rows.name == "particles") load_particles(rows);
+  if (rows.name == "contacts") load_pairs(rows);
+  if (rows.name == "body_contacts") load_touches(rows);
+  if (rows.name == "bodies") load_bodies(rows);
+}
+
+void World::end_load() {
+  count_ = particle_count();
+  for (std::uint32_t i = 0; i < owned_ && load_failure_.empty(); ++i)
+    if (loaded_grain(particles_[i].id) != i) load_failure_ = "a grain is there twice or not at all";
+  if (ranks_.max(std::int64_t{load_failure_.empty() ? 0 : 1}) == 0) return;
+  throw FormatError("the checkpoint does not fit together: " +
+                    (load_failure_.empty() ? "rows of another rank" : load_failure_));
+}
+
+// While a state is loaded each rank has one block of ids, in order.
+std::optional<std::uint32_t> World::loaded_grain(std::int64_t id) const {
+  if (owned_ == 0 || id < particles_[0].id ||
+      id - particles_[0].id >= static_cast<std::int64_t>(owned_))
+    return std::nullopt;
+  return static_cast<std::uint32_t>(id - particles_[0].id);
+}
+
+void World::load_particles(StateTable rows) {
+  if (particles_.empty()) reserve(static_cast<std::size_t>(rows.key_count / ranks_.size() + 1));
+  sort_rows(ranks_, rows);
+  const double* from = rows.reals.data();
+  for (std::size_t row = 0; row < rows.rows(); ++row) {
     Particle p;
-    p.id = grains.integers[row * grains.integer_width()];
+    p.id = rows.integers[row * rows.integer_width()];
     p.position = pull(from);
     p.velocity = pull(from);
     p.spin = pull(from);
     p.radius = *from++;
     p.mass = *from++;
-    particles_.push_back(p);
-    origins_.push_back(pull(from));
+    add_particle(p);
+    origins_.back() = pull(from);
   }
-  owned_ = particles_.size();
-  must_rebuild_ = true;
 }
 
-void World::load_contacts(const State& state) {
-  StateTable contacts = table_of(state, "contacts");
-  // Both grains of a contact may end on different ranks: each takes a copy under its own key.
-  StateTable both = contacts;
-  const std::size_t rw = contacts.real_width();
-  const std::size_t iw = contacts.integer_width();
-  GROUSER_CHECK(iw == 2);
-  for (std::size_t row = 0; row < contacts.rows(); ++row) {
-    both.integers.insert(both.integers.end(),
-                         {contacts.integers[row * iw + 1], contacts.integers[row * iw]});
-    both.reals.insert(both.reals.end(), contacts.reals.data() + row * rw,
-                      contacts.reals.data() + (row + 1) * rw);
+// Both grains of a pair may be on different ranks: each takes a copy under its own key.
+void World::load_pairs(const StateTable& rows) {
+  const std::size_t width = rows.real_width();
+  // Fields are the same on every rank, so this is decided alike everywhere.
+  if (width != pairs_.history_width())
+    throw FormatError("the checkpoint was written with other contact laws");
+  StateTable both = rows;
+  GROUSER_CHECK(rows.integer_width() == 2);
+  for (std::size_t row = 0; row < rows.rows(); ++row) {
+    both.integers.insert(both.integers.end(), {rows.integers[row * 2 + 1], rows.integers[row * 2]});
+    both.reals.insert(both.reals.end(), rows.reals.data() + row * width,
+                      rows.reals.data() + (row + 1) * width);
   }
   sort_rows(ranks_, both);
-  StateTable touches = table_of(state, "body_contacts");
-  sort_rows(ranks_, touches);
-
-  // Fields are the same on every rank, so this is decided alike everywhere.
-  if (pairs_.history_width() != rw || touches.real_width() != rw)
-    throw FormatError("the checkpoint was written with other contact laws");
-  pairs_.forget();
-  for (BodyContacts& on_body : body_contacts_) on_body.forget();
-  std::size_t pair = 0;
-  std::size_t touch = 0;
-  for (std::uint32_t i = 0; i < owned_; ++i) {  // rows and grains are both sorted by id here
-    const std::int64_t id = particles_[i].id;
-    for (; pair < both.rows() && both.integers[pair * 2] == id; ++pair)
-      pairs_.keep(i, both.integers[pair * 2 + 1], both.reals.data() + pair * rw);
-    for (; touch < touches.rows() && touches.integers[touch * 2] == id; ++touch) {
-      const std::int64_t place = touches.integers[touch * 2 + 1];
-      const auto body = static_cast<std::size_t>(place >> kFacetBits);
-      // A body that the case does not have is noticed where bodies are loaded.
-      if (body < body_contacts_.size())
-        body_contacts_[body].keep(i, static_cast<int>(place & 0xFFFFFFFF),
-                                  touches.reals.data() + touch * rw);
+  for (std::size_t row = 0; row < both.rows(); ++row) {
+    const auto grain = loaded_grain(both.integers[row * 2]);
+    if (grain) {
+      pairs_.keep(*grain, both.integers[row * 2 + 1], both.reals.data() + row * width);
+    } else {
+      load_failure_ = "a contact of a grain that is not there";
     }
   }
-  const bool is_left_over = pair != both.rows() || touch != touches.rows();
-  if (ranks_.max(std::int64_t{is_left_over ? 1 : 0}) != 0)
-    throw FormatError("the checkpoint has contacts of grains that it does not have");
 }
 
-void World::load_state(const State& state) {
-  load_particles(state);
-  load_contacts(state);
-  StateTable rows = table_of(state, "bodies");
+void World::load_touches(StateTable rows) {
+  const std::size_t width = rows.real_width();
+  if (width != pairs_.history_width())
+    throw FormatError("the checkpoint was written with other contact laws");
+  sort_rows(ranks_, rows);
+  for (std::size_t row = 0; row < rows.rows(); ++row) {
+    const auto grain = loaded_grain(rows.integers[row * 2]);
+    const std::int64_t place = rows.integers[row * 2 + 1];
+    const auto body = static_cast<std::size_t>(place >> kFacetBits);
+    if (grain && body < body_contacts_.size()) {
+      body_contacts_[body].keep(*grain,
+                                static_cast<int>(place & ((std::int64_t{1} << kFacetBits) - 1)),
+                                rows.reals.data() + row * width);
+    } else {
+      load_failure_ = "a contact of a grain or body that is not there";
+    }
+  }
+}
+
+void World::load_bodies(const StateTable& rows) {
   // Few rows: every rank needs them all.
   std::vector<Bytes> out(static_cast<std::size_t>(ranks_.size()));
   for (Bytes& to : out)

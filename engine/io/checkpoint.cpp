@@ -9,17 +9,21 @@
 #include "base/errors.hpp"
 #include "base/hash.hpp"
 #include "engine/core/agree.hpp"
-#include "engine/io/checkpoint_file.hpp"
 
 namespace grouser {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::size_t bytes_of(const State& state) {
-  std::size_t bytes = 0;
-  for (const StateTable& table : state)
-    bytes += table.integers.size() * sizeof(std::int64_t) + table.reals.size() * sizeof(double);
+// Keys of a piece, per rank.
+constexpr std::int64_t kPieceKeys = 1 << 18;
+
+// What a piece says of the whole.
+std::uintmax_t bytes_of(const State& piece) {
+  std::uintmax_t bytes = 0;
+  for (const StateTable& table : piece)
+    bytes += static_cast<std::uintmax_t>(table.all_rows) *
+             (table.integer_width() * sizeof(std::int64_t) + table.real_width() * sizeof(double));
   return bytes;
 }
 
@@ -45,10 +49,10 @@ bool is_unpublished(const fs::path& file) {
 
 }  // namespace
 
-State read_checkpoint(const Communicator& ranks, const fs::path& directory,
-                      const CheckpointManifest& manifest) {
+void read_checkpoint(const Communicator& ranks, const fs::path& directory,
+                     const CheckpointManifest& manifest, const RowSink& sink) {
   const fs::path file = directory / manifest.file;
-  State state;
+  std::string hash;
   std::string failure = agreed_failure(ranks, [&] {
     std::error_code error;
     const auto size = fs::file_size(file, error);
@@ -57,13 +61,12 @@ State read_checkpoint(const Communicator& ranks, const fs::path& directory,
   });
   // Only a file of the right size is opened by all ranks together.
   if (failure.empty()) {
-    failure = agreed_failure(ranks, [&] { state = read_state_file(ranks, file); });
+    failure = agreed_failure(ranks, [&] { hash = hex(read_state_file(ranks, file, sink)); });
     if (!failure.empty()) failure = file.string() + ": " + failure;
   }
-  if (failure.empty() && hex(hash_state(ranks, state)) != manifest.state_hash)
+  if (failure.empty() && hash != manifest.state_hash)
     failure = file.string() + " does not have the hash its manifest tells";
   if (!failure.empty()) throw FormatError(failure);
-  return state;
 }
 
 CheckpointStore::CheckpointStore(const Communicator& ranks, const fs::path& directory,
@@ -87,10 +90,14 @@ void CheckpointStore::remove_leftovers() {
   ranks_.barrier();
 }
 
-CheckpointManifest CheckpointStore::write_data(State state, CheckpointManifest manifest) {
-  for (StateTable& table : state) sort_rows(ranks_, table);
-  manifest.state_hash = hex(hash_state(ranks_, state));
-  const std::int64_t bytes = ranks_.sum(static_cast<std::int64_t>(bytes_of(state)));
+std::int64_t CheckpointStore::pieces_for(std::int64_t keys) const {
+  return std::max<std::int64_t>(1, keys / (kPieceKeys * ranks_.size()));
+}
+
+CheckpointManifest CheckpointStore::write_data(const StateSource& source, std::int64_t pieces,
+                                               CheckpointManifest manifest) {
+  State first = source({0, pieces});
+  const std::uintmax_t bytes = bytes_of(first);
   std::string name;
   if (ranks_.rank() == 0) {
     name = kFilePrefix + run_files::step_digits(manifest.step);
@@ -104,21 +111,23 @@ CheckpointManifest CheckpointStore::write_data(State state, CheckpointManifest m
 
   // Asking first keeps a full disk away from the file library, which does not survive one.
   std::string failure = agreed_failure(ranks_, [&] {
-    if (ranks_.rank() == 0)
-      check_room(directory_, static_cast<std::uintmax_t>(bytes) + input_.size() + kFileOverhead);
+    if (ranks_.rank() == 0) check_room(directory_, bytes + input_.size() + kFileOverhead);
   });
   if (failure.empty())
-    failure =
-        agreed_failure(ranks_, [&] { write_state_file(ranks_, file, state, manifest, input_); });
+    failure = agreed_failure(ranks_, [&] {
+      const auto piece = [&](const StatePiece& wanted) {
+        return wanted.index == 0 ? std::move(first) : source(wanted);
+      };
+      manifest.state_hash = hex(write_state_file(ranks_, file, piece, pieces, manifest, input_));
+    });
   if (failure.empty())
     failure = agreed_failure(ranks_, [&] {
       if (ranks_.rank() == 0) sync_path(file);
       manifest.bytes = static_cast<std::int64_t>(fs::file_size(file));
     });
   if (failure.empty()) {
-    state.clear();
     try {
-      read_checkpoint(ranks_, directory_, manifest);
+      read_checkpoint(ranks_, directory_, manifest, [](const StateTable&) {});
     } catch (const FormatError& error) {
       failure = error.what();
     }
@@ -166,7 +175,7 @@ std::vector<CheckpointManifest> CheckpointStore::manifests() const {
   return all;
 }
 
-std::optional<CheckpointStore::Loaded> CheckpointStore::load_newest(const std::string& case_key) {
+std::optional<CheckpointManifest> CheckpointStore::find_newest(const std::string& case_key) {
   // Rank 0 alone looks, so that all ranks try the same files.
   std::string list;
   on_first_rank(ranks_, [&] {
@@ -182,7 +191,9 @@ std::optional<CheckpointStore::Loaded> CheckpointStore::load_newest(const std::s
     from = to + 1;
     any = true;
     try {
-      return Loaded{manifest, read_checkpoint(ranks_, directory_, manifest)};
+      // Once for the hashes alone: nobody is to take rows of a damaged one.
+      read_checkpoint(ranks_, directory_, manifest, [](const StateTable&) {});
+      return manifest;
     } catch (const FormatError& error) {
       if (ranks_.rank() != 0) continue;
       spdlog::warn("io damaged checkpoint passed over: {}", error.what());
@@ -193,6 +204,10 @@ std::optional<CheckpointStore::Loaded> CheckpointStore::load_newest(const std::s
   }
   if (any) throw FormatError("every checkpoint in " + directory_.string() + " is damaged");
   return std::nullopt;
+}
+
+void CheckpointStore::read(const CheckpointManifest& manifest, const RowSink& sink) const {
+  read_checkpoint(ranks_, directory_, manifest, sink);
 }
 
 void CheckpointStore::retain(std::size_t keep) {

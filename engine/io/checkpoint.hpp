@@ -10,6 +10,7 @@
 #include "base/run_contract.hpp"
 #include "engine/core/communicator.hpp"
 #include "engine/core/state_io.hpp"
+#include "engine/io/checkpoint_file.hpp"
 
 namespace grouser {
 
@@ -26,14 +27,16 @@ class CheckpointStore {
   CheckpointStore(const Communicator& ranks, const std::filesystem::path& directory,
                   std::string input = "");
 
-  /// Writes a checkpoint; `manifest` names case, step and time, the rest is filled in and returned.
+  /// Writes a checkpoint of what `source` gives in `pieces` pieces; `manifest` names case, step and
+  /// time, the rest is filled in and returned.
   /// @param may_publish asked on rank 0 right before the manifest is written; on false nothing
   ///        remains and nothing is returned
   /// @throws StorageError on every rank; the checkpoints before stay. Collective.
   template <class MayPublish>
-  std::optional<CheckpointManifest> write(State state, CheckpointManifest manifest,
+  std::optional<CheckpointManifest> write(const StateSource& source, std::int64_t pieces,
+                                          CheckpointManifest manifest,
                                           const MayPublish& may_publish) {
-    manifest = write_data(std::move(state), std::move(manifest));
+    manifest = write_data(source, pieces, std::move(manifest));
     const bool allowed = ranks_.from_first(ranks_.rank() == 0 ? may_publish() : 0) != 0;
     if (!allowed) {
       discard(manifest);
@@ -43,14 +46,18 @@ class CheckpointStore {
     return manifest;
   }
 
-  struct Loaded {
-    CheckpointManifest manifest;
-    State state;
-  };
-  /// The newest checkpoint of `case_key` that is whole; damaged ones are marked and passed over.
-  /// Nothing when there is none at all. @throws FormatError when all there are are damaged.
-  /// Collective.
-  std::optional<Loaded> load_newest(const std::string& case_key);
+  /// Pieces for a state of so many keys, such that one of them takes little room beside the grains.
+  /// Local.
+  std::int64_t pieces_for(std::int64_t keys) const;
+
+  /// Looks for the newest checkpoint of `case_key` that is whole; damaged ones are marked and
+  /// passed over. Nothing when there is none at all. @throws FormatError when all there are are
+  /// damaged. Collective.
+  std::optional<CheckpointManifest> find_newest(const std::string& case_key);
+
+  /// Hands over the rows of a checkpoint that find_newest has found. @throws FormatError on every
+  /// rank. Collective.
+  void read(const CheckpointManifest& manifest, const RowSink& sink) const;
 
   /// Removes all but the newest `keep` checkpoints. Collective.
   void retain(std::size_t keep);
@@ -62,7 +69,8 @@ class CheckpointStore {
   void remove_leftovers();
 
  private:
-  CheckpointManifest write_data(State state, CheckpointManifest manifest);
+  CheckpointManifest write_data(const StateSource& source, std::int64_t pieces,
+                                CheckpointManifest manifest);
   void publish(const CheckpointManifest& manifest);
   void discard(const CheckpointManifest& manifest);
   std::vector<CheckpointManifest> manifests() const;
@@ -73,9 +81,9 @@ class CheckpointStore {
   std::vector<std::filesystem::path> leftovers_;  // rank 0
 };
 
-/// Reads the file of `manifest` in `directory` and checks every table's hash.
+/// Reads the file of `manifest` in `directory`, hands over its rows and checks all hashes.
 /// @throws FormatError on every rank when it is not what the manifest says. Collective.
-State read_checkpoint(const Communicator& ranks, const std::filesystem::path& directory,
-                      const CheckpointManifest& manifest);
+void read_checkpoint(const Communicator& ranks, const std::filesystem::path& directory,
+                     const CheckpointManifest& manifest, const RowSink& sink);
 
 }  // namespace grouser

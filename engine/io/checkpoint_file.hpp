@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 
 #include "base/run_contract.hpp"
 #include "engine/core/communicator.hpp"
@@ -9,15 +10,24 @@
 
 namespace grouser {
 
-/// Writes sorted tables as one HDF5 file, and beside them rank 0's `input`. @throws StorageError,
-/// on this rank alone. Collective.
-void write_state_file(const Communicator& ranks, const std::filesystem::path& file,
-                      const State& state, const CheckpointManifest& manifest,
-                      const std::string& input);
+/// Makes one piece of a state. Collective.
+using StateSource = std::function<State(const StatePiece&)>;
 
-/// Reads a file written by write_state_file and checks the hash of every dataset; each rank gets
-/// its block of keys.
+/// Takes one piece of one table. Collective.
+using RowSink = std::function<void(const StateTable&)>;
+
+/// Writes a state as one HDF5 file, piece by piece, and beside it rank 0's `input`.
+/// @return hash of the state
+/// @throws StorageError, on this rank alone. Collective.
+std::uint64_t write_state_file(const Communicator& ranks, const std::filesystem::path& file,
+                               const StateSource& source, std::int64_t pieces,
+                               const CheckpointManifest& manifest, const std::string& input);
+
+/// Reads a file written by write_state_file, table by table in the order they were saved, large
+/// ones in pieces, and checks the hash of every dataset; rows come in any split over ranks.
+/// @return hash of the state
 /// @throws StorageError or FormatError, on this rank alone. Collective.
-State read_state_file(const Communicator& ranks, const std::filesystem::path& file);
+std::uint64_t read_state_file(const Communicator& ranks, const std::filesystem::path& file,
+                              const RowSink& sink);
 
 }  // namespace grouser

@@ -15,12 +15,18 @@ class H5Handle {
  public:
   using Close = herr_t (*)(hid_t);
 
+  H5Handle() = default;  ///< of nothing
   H5Handle(hid_t id, Close closer, const std::string& doing) : id_(id), close_(closer) {
     if (id_ < 0) throw StorageError("HDF5 could not " + doing);
   }
   H5Handle(H5Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
   H5Handle(const H5Handle&) = delete;
   H5Handle& operator=(const H5Handle&) = delete;
+  H5Handle& operator=(H5Handle&& other) noexcept {
+    std::swap(id_, other.id_);
+    std::swap(close_, other.close_);
+    return *this;
+  }
   ~H5Handle() {
     if (id_ >= 0) close_(id_);
   }
@@ -33,8 +39,8 @@ class H5Handle {
   }
 
  private:
-  hid_t id_;
-  Close close_;
+  hid_t id_ = -1;
+  Close close_ = nullptr;
 };
 
 inline void h5_check(herr_t result, const std::string& doing) {

@@ -86,32 +86,53 @@ void select_rows(hid_t file_space, hid_t memory_space, const hsize_t* start, con
 }
 
 template <class Number>
-H5Handle write_rows(const Communicator& ranks, hid_t group, const std::string& name,
-                    const std::vector<Number>& values, std::size_t width) {
-  const int dimensions = width == 0 ? 1 : 2;
+H5Handle make_rows(hid_t group, const std::string& name, std::int64_t rows, std::size_t width) {
+  const hsize_t extent[2] = {static_cast<hsize_t>(rows), width};
+  H5Handle space(H5Screate_simple(width == 0 ? 1 : 2, extent, nullptr), H5Sclose,
+                 "make a data space");
+  // No times: the same rows make the same file.
+  H5Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "prepare a dataset");
+  h5_check(H5Pset_obj_track_times(properties, false), "prepare a dataset");
+  return {H5Dcreate2(group, name.c_str(), h5_type<Number>(), space, H5P_DEFAULT, properties,
+                     H5P_DEFAULT),
+          H5Dclose, "make dataset " + name};
+}
+
+template <class Number>
+void write_rows_at(const Communicator& ranks, hid_t dataset, std::int64_t first,
+                   const std::vector<Number>& values, std::size_t width) {
   const hsize_t columns = std::max<std::size_t>(width, 1);
   const auto rows = static_cast<std::int64_t>(values.size() / columns);
-  const auto all = static_cast<hsize_t>(ranks.sum(rows));
-  const auto before = static_cast<hsize_t>(ranks.sum_before(rows));
-  const hsize_t extent[2] = {all, columns};
-  const hsize_t start[2] = {before, 0};
+  const std::int64_t before = first + ranks.sum_before(rows);
+  if (ranks.sum(rows) == 0) return;  // HDF5 1.10 cannot write nothing together
+  const hsize_t start[2] = {static_cast<hsize_t>(before), 0};
   const hsize_t count[2] = {static_cast<hsize_t>(rows), columns};
-  H5Handle file_space(H5Screate_simple(dimensions, extent, nullptr), H5Sclose, "make a data space");
-  H5Handle dataset(H5Dcreate2(group, name.c_str(), h5_type<Number>(), file_space, H5P_DEFAULT,
-                              H5P_DEFAULT, H5P_DEFAULT),
-                   H5Dclose, "make dataset " + name);
-  H5Handle memory_space(H5Screate_simple(dimensions, count, nullptr), H5Sclose,
+  H5Handle file_space(H5Dget_space(dataset), H5Sclose, "ask a data space");
+  H5Handle memory_space(H5Screate_simple(width == 0 ? 1 : 2, count, nullptr), H5Sclose,
                         "make a data space");
   select_rows(file_space, memory_space, start, count);
-  if (all == 0) return dataset;  // HDF5 1.10 cannot write nothing together
   const Number nothing{};
   h5_agree(ranks,
            H5Dwrite(dataset, h5_type<Number>(), memory_space, file_space,
                     collective_transfer(ranks), rows > 0 ? values.data() : &nothing),
-           "write dataset " + name);
+           "write a dataset");
+}
+
+template <class Number>
+H5Handle write_rows(const Communicator& ranks, hid_t group, const std::string& name,
+                    const std::vector<Number>& values, std::size_t width) {
+  const auto rows = static_cast<std::int64_t>(values.size() / std::max<std::size_t>(width, 1));
+  H5Handle dataset = make_rows<Number>(group, name, ranks.sum(rows), width);
+  write_rows_at(ranks, dataset, 0, values, width);
   return dataset;
 }
 
+template H5Handle make_rows<double>(hid_t, const std::string&, std::int64_t, std::size_t);
+template H5Handle make_rows<std::int64_t>(hid_t, const std::string&, std::int64_t, std::size_t);
+template void write_rows_at(const Communicator&, hid_t, std::int64_t, const std::vector<double>&,
+                            std::size_t);
+template void write_rows_at(const Communicator&, hid_t, std::int64_t,
+                            const std::vector<std::int64_t>&, std::size_t);
 template H5Handle write_rows(const Communicator&, hid_t, const std::string&,
                              const std::vector<double>&, std::size_t);
 template H5Handle write_rows(const Communicator&, hid_t, const std::string&,

@@ -35,6 +35,17 @@ void write_number(hid_t place, const char* name, std::int64_t value);
 /// Selects rows start[0] ... start[0] + count[0] - 1 for a transfer, nothing when there are none.
 void select_rows(hid_t file_space, hid_t memory_space, const hsize_t* start, const hsize_t* count);
 
+/// Makes a dataset of `rows` x `width` numbers; width 0 makes one of one dimension. Collective.
+template <class Number>
+H5Handle make_rows(hid_t group, const std::string& name, std::int64_t rows, std::size_t width);
+
+/// Writes the rows of all ranks one rank after the other, from row `first` of the dataset on.
+/// @param values rows x width on this rank; may be empty
+/// @throws StorageError on every rank. Collective.
+template <class Number>
+void write_rows_at(const Communicator& ranks, hid_t dataset, std::int64_t first,
+                   const std::vector<Number>& values, std::size_t width);
+
 /// Writes this rank's rows behind those of the ranks before it, as one dataset of all ranks' rows.
 /// @param values  rows x width on this rank; may be empty
 /// @param width   numbers per row; 0 makes a dataset of one dimension

@@ -140,16 +140,16 @@ WheelSample Wheel::take_sample() {
   return sample;
 }
 
-void Wheel::save_state(State& state) const {
+void Wheel::save_state(State& state, const StatePiece& piece) const {
   StateTable table;
   table.name = "wheel";
-  table.key_count = 1;
+  table.key_count = table.all_rows = 1;
   table.real_fields = {
       {"start_x", "m", 1},           {"surface", "m", 1},         {"sample_steps", "1", 1},
       {"sample_pull", "N", 1},       {"sample_vertical", "N", 1}, {"sample_side", "N", 1},
       {"sample_gross", "N", 1},      {"sample_torque", "N m", 1}, {"sample_speed", "m s-1", 1},
       {"sample_spin", "rad s-1", 1}, {"sample_overlap", "1", 1}};
-  if (world_.ranks().rank() == 0) {
+  if (world_.ranks().rank() == 0 && piece.has(0, 1)) {
     table.integers = {0, 0};
     table.reals = {start_x_, surface_, steps_,   pull_, vertical_, side_,
                    gross_,   torque_,  forward_, spin_, overlap_};
@@ -157,12 +157,18 @@ void Wheel::save_state(State& state) const {
   state.push_back(std::move(table));
 }
 
-void Wheel::load_state(const State& state) {
-  const std::vector<double> row = first_row(world_.ranks(), table_of(state, "wheel"));
+void Wheel::load_rows(const StateTable& rows) {
+  if (rows.name != "wheel") return;
+  const std::vector<double> row = first_row(world_.ranks(), rows);
   const std::array<double*, 11> targets{&start_x_, &surface_, &steps_,   &pull_, &vertical_, &side_,
                                         &gross_,   &torque_,  &forward_, &spin_, &overlap_};
   if (row.size() != targets.size()) throw FormatError("the checkpoint has another kind of wheel");
   for (std::size_t i = 0; i < targets.size(); ++i) *targets[i] = row[i];
+  is_loaded_ = true;
+}
+
+void Wheel::end_load() {
+  if (!is_loaded_) throw FormatError("the checkpoint has no wheel");
 }
 
 }  // namespace grouser

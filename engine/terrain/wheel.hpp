@@ -58,8 +58,10 @@ class Wheel : public Stateful {
   /// The sample since the last call; begins the next. Local.
   WheelSample take_sample();
 
-  void save_state(State& state) const override;
-  void load_state(const State& state) override;
+  void save_state(State& state, const StatePiece& piece = {}) const override;
+  void begin_load() override { is_loaded_ = false; }
+  void load_rows(const StateTable& rows) override;
+  void end_load() override;
 
  private:
   double speed_factor(double time) const;
@@ -73,6 +75,7 @@ class Wheel : public Stateful {
   double inertia_;
   double start_x_ = 0.0;
   double surface_ = 0.0;
+  bool is_loaded_ = false;
   // Sums over the steps since the last sample.
   double steps_ = 0.0;
   double pull_ = 0.0;

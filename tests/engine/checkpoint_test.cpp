@@ -29,17 +29,18 @@ fs::path fresh_directory(const std::string& name) {
   return directory;
 }
 
-State some_state(double factor, std::int64_t rows) {
+State some_state(double factor, std::int64_t rows, const StatePiece& piece = {}) {
   const Communicator ranks;
   StateTable table;
   table.name = "grains";
-  table.key_count = rows;
+  table.key_count = table.all_rows = rows;
   table.integer_fields = {{"kind", "1", 1}};
   table.real_fields = {{"position", "m", 3}, {"radius", "m", 1}};
   StateTable empty;
   empty.name = "nothing";
   empty.real_fields = {{"value", "1", 1}};
   for (std::int64_t key = rows - 1 - ranks.rank(); key >= 0; key -= ranks.size()) {
+    if (!piece.has(key, rows)) continue;
     table.integers.insert(table.integers.end(), {key, 0, key % 7});
     const double x = factor * static_cast<double>(key);
     table.reals.insert(table.reals.end(), {x, -x, 0.1 * x, 1e-3});
@@ -55,20 +56,53 @@ CheckpointManifest at_step(std::int64_t step) {
   return manifest;
 }
 
-std::optional<CheckpointManifest> write(CheckpointStore& store, double factor, std::int64_t step) {
-  return store.write(some_state(factor, 1000), at_step(step), [] { return true; });
+std::optional<CheckpointManifest> write(CheckpointStore& store, double factor, std::int64_t step,
+                                        std::int64_t pieces = 1) {
+  const auto source = [&](const StatePiece& piece) { return some_state(factor, 1000, piece); };
+  return store.write(source, pieces, at_step(step), [] { return true; });
+}
+
+struct Loaded {
+  CheckpointManifest manifest;
+  State state;
+};
+std::optional<Loaded> load_newest(CheckpointStore& store, const std::string& key) {
+  const auto found = store.find_newest(key);
+  if (!found) return std::nullopt;
+  Loaded loaded{*found, {}};
+  store.read(*found, [&](const StateTable& rows) { loaded.state.push_back(rows); });
+  return loaded;
 }
 
 TEST(Checkpoint, ReadsBackTheBitsThatWereWritten) {
   const Communicator ranks;
   CheckpointStore store(ranks, fresh_directory("roundtrip"));
   ASSERT_TRUE(write(store, 1.0 / 3.0, 10));
-  const auto loaded = store.load_newest("key");
+  const auto loaded = load_newest(store, "key");
   ASSERT_TRUE(loaded);
   EXPECT_EQ(loaded->manifest.step, 10);
   EXPECT_EQ(hash_state(ranks, loaded->state), hash_state(ranks, some_state(1.0 / 3.0, 1000)));
   EXPECT_EQ(table_of(loaded->state, "grains").real_fields[0].unit, "m");
-  EXPECT_FALSE(store.load_newest("another case"));
+  EXPECT_FALSE(load_newest(store, "another case"));
+}
+
+TEST(Checkpoint, IsTheSameFileInHoweverManyPiecesItWasWritten) {
+  const Communicator ranks;
+  const fs::path directory = fresh_directory("pieces");
+  CheckpointStore store(ranks, directory);
+  const auto whole = write(store, 1.0 / 3.0, 10);
+  for (const std::int64_t pieces : {2, 7, 1500}) {  // some of 1500 have no key
+    const auto cut = write(store, 1.0 / 3.0, 10, pieces);
+    EXPECT_EQ(cut->state_hash, whole->state_hash);
+    const auto loaded = load_newest(store, "key");
+    EXPECT_EQ(hash_state(ranks, loaded->state), hash_state(ranks, some_state(1.0 / 3.0, 1000)));
+    std::ifstream a(directory / whole->file, std::ios::binary);
+    std::ifstream b(directory / cut->file, std::ios::binary);
+    EXPECT_TRUE(
+        std::equal(std::istreambuf_iterator<char>(a), {}, std::istreambuf_iterator<char>(b)))
+        << pieces << " pieces";
+    ranks.barrier();
+  }
 }
 
 TEST(Checkpoint, ATruncatedOneIsRefusedAndThePreviousUsed) {
@@ -80,7 +114,7 @@ TEST(Checkpoint, ATruncatedOneIsRefusedAndThePreviousUsed) {
   if (ranks.rank() == 0)
     fs::resize_file(directory / second->file, fs::file_size(directory / second->file) / 2);
   ranks.barrier();
-  const auto loaded = store.load_newest("key");
+  const auto loaded = load_newest(store, "key");
   ASSERT_TRUE(loaded);
   EXPECT_EQ(loaded->manifest.step, 10);
 }
@@ -101,7 +135,7 @@ TEST(Checkpoint, AFlippedBitIsRefusedAndThePreviousUsed) {
     file.put(static_cast<char>(byte ^ 0x10));
   }
   ranks.barrier();
-  const auto loaded = store.load_newest("key");
+  const auto loaded = load_newest(store, "key");
   ASSERT_TRUE(loaded);
   EXPECT_EQ(loaded->manifest.step, 10);
 }
@@ -113,7 +147,7 @@ TEST(Checkpoint, WhenAllAreDamagedTheRunIsRefused) {
   const auto only = write(store, 1.0, 10);
   if (ranks.rank() == 0) fs::resize_file(directory / only->file, 100);
   ranks.barrier();
-  EXPECT_THROW(store.load_newest("key"), FormatError);
+  EXPECT_THROW(load_newest(store, "key"), FormatError);
 }
 
 TEST(Checkpoint, WithoutItsManifestItDoesNotExist) {
@@ -121,8 +155,9 @@ TEST(Checkpoint, WithoutItsManifestItDoesNotExist) {
   const fs::path directory = fresh_directory("no_manifest");
   CheckpointStore store(ranks, directory);
   write(store, 1.0, 10);
-  EXPECT_FALSE(store.write(some_state(2.0, 1000), at_step(20), [] { return false; }));
-  EXPECT_EQ(store.load_newest("key")->manifest.step, 10);
+  EXPECT_FALSE(store.write([](const StatePiece& piece) { return some_state(2.0, 1000, piece); }, 1,
+                           at_step(20), [] { return false; }));
+  EXPECT_EQ(load_newest(store, "key")->manifest.step, 10);
   ranks.barrier();
   // Nothing of the unpublished one remains.
   EXPECT_EQ(std::distance(fs::directory_iterator(directory), fs::directory_iterator()), 2);
@@ -135,7 +170,7 @@ TEST(Checkpoint, OnlyTheNewestAreKept) {
   for (int i = 1; i <= 5; ++i) write(store, i, i);
   store.retain(2);
   EXPECT_EQ(std::distance(fs::directory_iterator(directory), fs::directory_iterator()), 4);
-  EXPECT_EQ(store.load_newest("key")->manifest.step, 5);
+  EXPECT_EQ(load_newest(store, "key")->manifest.step, 5);
 }
 
 std::set<std::string> names_in(const fs::path& directory) {
@@ -197,7 +232,7 @@ void flip_bit_at(const fs::path& file, const std::string& bytes) {
 std::string why_refused(const Communicator& ranks, const fs::path& directory,
                         const CheckpointManifest& manifest) {
   try {
-    read_checkpoint(ranks, directory, manifest);
+    read_checkpoint(ranks, directory, manifest, [](const StateTable&) {});
   } catch (const FormatError& error) {
     return error.what();
   }
@@ -241,12 +276,12 @@ TEST(Checkpoint, ADiskThatFillsUpInTheMiddleKeepsThePrevious) {
   setrlimit(RLIMIT_FSIZE, &small);
   EXPECT_THROW(write(store, 2.0, 20), StorageError);
   setrlimit(RLIMIT_FSIZE, &before);
-  const auto loaded = store.load_newest("key");
+  const auto loaded = load_newest(store, "key");
   ASSERT_TRUE(loaded);
   EXPECT_EQ(loaded->manifest.step, 10);
   EXPECT_EQ(hash_state(ranks, loaded->state), hash_state(ranks, some_state(1.0, 1000)));
   ASSERT_TRUE(write(store, 2.0, 20));  // and there is room again
-  EXPECT_EQ(store.load_newest("key")->manifest.step, 20);
+  EXPECT_EQ(load_newest(store, "key")->manifest.step, 20);
 }
 
 TEST(Series, ContinuesAsIfItHadNeverBeenCut) {

@@ -74,10 +74,10 @@ StateTable some_rows(const std::vector<std::int64_t>& keys) {
 
 TEST(StateIo, HashFollowsContentAndNotOrder) {
   const Communicator alone = Communicator::alone();
-  EXPECT_EQ(hash_table(alone, some_rows({1, 2, 3})), hash_table(alone, some_rows({3, 1, 2})));
+  EXPECT_EQ(hash_state(alone, {some_rows({1, 2, 3})}), hash_state(alone, {some_rows({3, 1, 2})}));
   StateTable other = some_rows({1, 2, 3});
   other.reals[1] = std::nextafter(other.reals[1], 2.0);
-  EXPECT_NE(hash_table(alone, some_rows({1, 2, 3})), hash_table(alone, other));
+  EXPECT_NE(hash_state(alone, {some_rows({1, 2, 3})}), hash_state(alone, {other}));
 }
 
 TEST(StateIo, SortedRowsAreInKeyOrder) {
