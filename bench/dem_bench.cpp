@@ -16,6 +16,7 @@
 #include "base/yaml.hpp"
 #include "bench/bed_file.hpp"
 #include "bench/bed_measure.hpp"
+#include "bench/giant_bed.hpp"
 #include "bench/process_memory.hpp"
 #include "bench/wheel_bed.hpp"
 #include "engine/app/setup.hpp"
@@ -251,10 +252,22 @@ int run(int argc, char** argv, const Communicator& ranks) {
   auto* measuring = app.add_subcommand("measure", "energy, contacts and overlap of a state");
   measuring->add_option("DIR", options.directory)->required();
   measuring->add_option("STATE", options.state, "rows: id, x, v, spin")->required();
+  GiantOptions giant{.time_step = kTimeStep, .skin = kSkin};
+  auto* making = app.add_subcommand("giant", "step, store and restart many copies of a bed");
+  making->add_option("DIR", giant.directory, "as left by export")->required();
+  making->add_option("ROOM", giant.room, "directory for the checkpoint")->required();
+  making->add_option("--tiles-x", giant.tiles_x, "copies along x");
+  making->add_option("--tiles-y", giant.tiles_y, "copies along y");
+  making->add_option("--steps", giant.steps, "before and after the checkpoint")->required();
+  making->add_flag("--rolling", giant.rolls, "with elastic-plastic rolling resistance");
   CLI11_PARSE(app, argc, argv);
   if (exporting->parsed()) export_bed(ranks, options.directory);
   if (sinking->parsed()) sink_wheel(ranks, other, options.directory);
   if (timing->parsed()) time_steps(ranks, options);
+  if (making->parsed()) {
+    const Case input = read_bench_case(giant.directory);
+    run_giant(ranks, input, read_bed(giant.directory / "bed.txt", input.grains.density), giant);
+  }
   if (measuring->parsed()) measure(options.directory, options.state);
   return 0;
 }

@@ -58,11 +58,13 @@ World make_world(const Communicator& ranks, const Case& input) {
 
 void fill(World& world, const Case& input) {
   const Filling filling(input);
-  const Communicator& ranks = world.ranks();
-  const std::int64_t first = first_key(filling.count(), ranks.size(), ranks.rank());
-  const std::int64_t last = first_key(filling.count(), ranks.size(), ranks.rank() + 1);
-  world.reserve(static_cast<std::size_t>(last - first));
-  for (std::int64_t id = first; id < last; ++id) world.add_particle(filling.particle(id));
+  // Every rank makes all grains and keeps its own: none has to travel, which would need more memory
+  // than stepping does.
+  world.reserve(static_cast<std::size_t>(filling.count() / world.ranks().size()));
+  for (std::int64_t id = 0; id < filling.count(); ++id) {
+    const Particle grain = filling.particle(id);
+    if (world.owns(grain.position)) world.add_particle(grain);
+  }
 }
 
 }  // namespace grouser

@@ -96,16 +96,23 @@ std::int64_t first_key(std::int64_t key_count, std::int64_t count, std::int64_t 
 void sort_rows(const Communicator& ranks, StateTable& table, const StatePiece& piece) {
   const std::size_t iw = table.integer_width();
   const std::size_t rw = table.real_width();
-  const std::vector<Bytes> in = ranks.exchange_all(pack_by_key(table, ranks.size(), piece));
   std::vector<std::int64_t> integers;
   std::vector<double> reals;
-  for (const Bytes& message : in) {
-    ByteReader reader(message);
-    while (!reader.empty()) {
-      integers.resize(integers.size() + iw);
-      reader.take(&integers[integers.size() - iw], iw);
-      reals.resize(reals.size() + rw);
-      if (rw > 0) reader.take(&reals[reals.size() - rw], rw);
+  if (ranks.size() == 1) {
+    integers.swap(table.integers);
+    reals.swap(table.reals);
+  } else {
+    const std::vector<Bytes> in = ranks.exchange_all(pack_by_key(table, ranks.size(), piece));
+    table.integers = {};
+    table.reals = {};
+    for (const Bytes& message : in) {
+      ByteReader reader(message);
+      while (!reader.empty()) {
+        integers.resize(integers.size() + iw);
+        reader.take(&integers[integers.size() - iw], iw);
+        reals.resize(reals.size() + rw);
+        if (rw > 0) reader.take(&reals[reals.size() - rw], rw);
+      }
     }
   }
   std::vector<std::size_t> order(integers.size() / iw);

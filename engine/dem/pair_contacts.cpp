@@ -84,10 +84,9 @@ void PairContacts::histories_of(const std::vector<Particle>& particles,
 void PairContacts::renumber(const std::vector<Particle>& particles,
                             const std::vector<std::uint32_t>& number) {
   PairHistories next(history_width());
-  kept_.each([&](std::uint32_t grain, std::int64_t partner, const double* values) {
+  kept_.drain([&](std::uint32_t grain, std::int64_t partner, const double* values) {
     if (number[grain] != kGone) next.add(number[grain], partner, values);
   });
-  kept_.clear();
   std::vector<double> values(history_width());
   // What the lists hold beside histories would stand beside the copies.
   for (Block& block : blocks_) {

@@ -6,6 +6,13 @@ namespace grouser {
 void PairHistories::add(std::uint32_t grain, std::int64_t partner, const double* values) {
   if (grain / kBucket >= buckets_.size()) buckets_.resize(grain / kBucket + 1);
   Bucket& bucket = buckets_[grain / kBucket];
+  if (bucket.grain.size() == bucket.grain.capacity()) {
+    // By less than the usual factor of two, half of which would stand empty.
+    const std::size_t room = bucket.grain.size() + bucket.grain.size() / 8 + 256;
+    bucket.grain.reserve(room);
+    bucket.partner.reserve(room);
+    bucket.values.reserve(room * width_);
+  }
   bucket.grain.push_back(grain);
   bucket.partner.push_back(partner);
   bucket.values.insert(bucket.values.end(), values, values + width_);

@@ -48,6 +48,17 @@ class PairHistories {
         visit(bucket.grain[r], bucket.partner[r], bucket.values.data() + r * width_);
   }
 
+  /// The same, and frees each bucket when it has been visited.
+  template <class Visit>
+  void drain(const Visit& visit) {
+    for (Bucket& bucket : buckets_) {
+      for (std::size_t r = 0; r < bucket.grain.size(); ++r)
+        visit(bucket.grain[r], bucket.partner[r], bucket.values.data() + r * width_);
+      bucket = Bucket{};
+    }
+    buckets_.clear();
+  }
+
   /// Forgets all under the grains of one bucket.
   void free_bucket(std::size_t bucket);
   void clear() { buckets_.clear(); }

@@ -59,6 +59,10 @@ void World::reset_origins() {
   for (std::size_t i = 0; i < owned_; ++i) origins_[i] = particles_[i].position;
 }
 
+bool World::owns(const Vec3& position) const {
+  return columns_.owner_of(position) == ranks_.rank();
+}
+
 void World::reserve(std::size_t count) {
   // Some more, for ghosts.
   particles_.reserve(count + count / 16);

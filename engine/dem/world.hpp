@@ -46,6 +46,9 @@ class World : public Stateful {
   /// all ranks. Local.
   void add_particle(const Particle& particle);
 
+  /// Whether a grain at this place would be this rank's. Local.
+  bool owns(const Vec3& position) const;
+
   /// Makes room for `count` grains on this rank, so that adding them does not move memory. Local.
   void reserve(std::size_t count);
 

@@ -42,6 +42,9 @@ void World::save_state(State& state, const StatePiece& piece) const {
   StateTable grains = particle_table();
   grains.key_count = total;
   grains.all_rows = total;
+  const std::size_t share = owned_ / static_cast<std::size_t>(piece.count);
+  grains.integers.reserve(share * grains.integer_width());
+  grains.reals.reserve(share * grains.real_width());
   for (std::size_t i = 0; i < owned_; ++i) {
     const Particle& p = particles_[i];
     if (!piece.has(p.id, total)) continue;
@@ -153,7 +156,7 @@ void World::load_particles(StateTable rows) {
   }
 }
 
-// Both grains of a pair may be on different ranks: each takes a copy under its own key.
+// Both grains of a pair may be on different ranks, or come to be: each takes a copy under its key.
 void World::load_pairs(const StateTable& rows) {
   const std::size_t width = rows.real_width();
   // Fields are the same on every rank, so this is decided alike everywhere.
@@ -161,7 +164,7 @@ void World::load_pairs(const StateTable& rows) {
     throw FormatError("the checkpoint was written with other contact laws");
   StateTable both = rows;
   GROUSER_CHECK(rows.integer_width() == 2);
-  for (std::size_t row = 0; row < rows.rows(); ++row) {
+  for (std::size_t row = 0; row < rows.rows() && ranks_.size() > 1; ++row) {
     both.integers.insert(both.integers.end(), {rows.integers[row * 2 + 1], rows.integers[row * 2]});
     both.reals.insert(both.reals.end(), rows.reals.data() + row * width,
                       rows.reals.data() + (row + 1) * width);

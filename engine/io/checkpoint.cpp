@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Keys of a piece, per rank.
-constexpr std::int64_t kPieceKeys = 1 << 18;
+constexpr std::int64_t kPieceKeys = 1 << 20;
 
 // What a piece says of the whole.
 std::uintmax_t bytes_of(const State& piece) {
