@@ -10,7 +10,7 @@
 namespace grouser {
 namespace {
 
-// Run under mpirun with any number of ranks; each rank also runs the same on its own to compare.
+// Run under mpirun with any number of ranks; the first also runs the same on its own to compare.
 
 std::uint64_t hash_of(const World& world) {
   State state;
@@ -63,8 +63,10 @@ TEST(Invariance, TrajectoryIsTheSameBitForBitOnAnyNumberOfRanks) {
   World alone = rain(Communicator::alone(), 1e-3, 5);
   for (int leg = 0; leg < 3; ++leg) {
     run(together, 8000);
-    run(alone, 8000);
-    ASSERT_EQ(hash_of(together), hash_of(alone)) << "after leg " << leg;
+    if (Communicator().rank() == 0) run(alone, 8000);
+    const auto expected = static_cast<std::uint64_t>(
+        Communicator().from_first(static_cast<std::int64_t>(hash_of(alone))));
+    ASSERT_EQ(hash_of(together), expected) << "after leg " << leg;
   }
   // The test means something only when grains touched, moved between ranks and hit the drum.
   EXPECT_GT(together.contacts(), 200);
@@ -173,8 +175,10 @@ TEST(Restart, StateMovesBetweenNumbersOfRanks) {
   World alone = rain(Communicator::alone(), 1e-3, 99);
   alone.load_state(state);
   run(together, 5000);
-  run(alone, 5000);
-  EXPECT_EQ(hash_of(together), hash_of(alone));
+  if (Communicator().rank() == 0) run(alone, 5000);
+  const auto expected = static_cast<std::uint64_t>(
+      Communicator().from_first(static_cast<std::int64_t>(hash_of(alone))));
+  EXPECT_EQ(hash_of(together), expected);
 }
 
 TEST(Oracle, ListsAndCellsGiveTheBitsOfBruteForce) {
