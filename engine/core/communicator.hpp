@@ -90,8 +90,10 @@ void append_bytes(Bytes& bytes, const Value* values, std::size_t count) {
 /// Takes plain values off the front of a message.
 class ByteReader {
  public:
-  explicit ByteReader(const Bytes& bytes) : bytes_(bytes) {}
+  explicit ByteReader(const Bytes& bytes, std::size_t at = 0) : bytes_(bytes), at_(at) {}
   bool empty() const { return at_ == bytes_.size(); }
+  std::size_t position() const { return at_; }
+  void skip(std::size_t size) { at_ += size; }
   template <class Value>
   void take(Value* values, std::size_t count) {
     copy(values, count * sizeof(Value));

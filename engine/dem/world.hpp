@@ -96,21 +96,12 @@ class World : public Stateful {
   void end_load() override;
 
  private:
-  // A grain that comes from another rank, with its histories.
+  // A grain that comes from another rank; its histories stay in the message.
   struct Arrival {
-    struct Pair {
-      std::int64_t partner = 0;
-      std::vector<double> history;
-    };
-    struct Touch {
-      std::size_t body = 0;
-      int facet = 0;
-      std::vector<double> history;
-    };
     Particle particle;
     Vec3 origin;
-    std::vector<Pair> pairs;
-    std::vector<Touch> touches;
+    std::size_t message = 0;
+    std::size_t histories = 0;  // where they begin
   };
   // A position to single precision: enough to tell how far a grain has moved since.
   struct Place {
@@ -129,7 +120,9 @@ class World : public Stateful {
   };
 
   void rebuild();
-  std::vector<Arrival> exchange_leaving(std::vector<bool>& leaves) const;
+  std::vector<Bytes> exchange_leaving(std::vector<bool>& leaves) const;
+  std::vector<Arrival> arrivals_in(const std::vector<Bytes>& messages) const;
+  void keep_histories(std::uint32_t grain, ByteReader reader);
   std::vector<std::uint32_t> numbers_by_cell(const std::vector<bool>& leaves,
                                              const std::vector<Arrival>& arrivals) const;
   void put_in_order(std::vector<std::uint32_t> number);

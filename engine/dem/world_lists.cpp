@@ -14,21 +14,20 @@ constexpr std::uint32_t kGone = PairContacts::kGone;
 
 void World::rebuild() {
   std::vector<bool> leaves(owned_, false);
-  std::vector<Arrival> arrivals;
-  if (ranks_.size() > 1) arrivals = exchange_leaving(leaves);
+  std::vector<Bytes> messages;
+  if (ranks_.size() > 1) messages = exchange_leaving(leaves);
+  const std::vector<Arrival> arrivals = arrivals_in(messages);
   std::vector<std::uint32_t> number = numbers_by_cell(leaves, arrivals);
   pairs_.renumber(particles_, number);  // while partners that are ghosts can still be named
   for (BodyContacts& contacts : body_contacts_) contacts.renumber(number);
   particles_.resize(owned_);
   for (std::size_t a = 0; a < arrivals.size(); ++a) {
-    const std::uint32_t at = number[owned_ + a];
-    for (const Arrival::Pair& pair : arrivals[a].pairs)
-      pairs_.keep(at, pair.partner, pair.history.data());
-    for (const Arrival::Touch& touch : arrivals[a].touches)
-      body_contacts_[touch.body].keep(at, touch.facet, touch.history.data());
+    keep_histories(number[owned_ + a],
+                   ByteReader(messages[arrivals[a].message], arrivals[a].histories));
     particles_.push_back(arrivals[a].particle);
     origins_.push_back(arrivals[a].origin);
   }
+  messages = {};
   put_in_order(std::move(number));
 
   count_ = particle_count();
@@ -51,7 +50,7 @@ void World::rebuild() {
 }
 
 // Sends grains that have left this rank's column to their owners, with copies of their histories.
-std::vector<World::Arrival> World::exchange_leaving(std::vector<bool>& leaves) const {
+std::vector<Bytes> World::exchange_leaving(std::vector<bool>& leaves) const {
   for (std::size_t i = 0; i < owned_; ++i)
     leaves[i] = columns_.owner_of(particles_[i].position) != ranks_.rank();
   PairHistories pairs(pairs_.history_width());
@@ -88,36 +87,48 @@ std::vector<World::Arrival> World::exchange_leaving(std::vector<bool>& leaves) c
     }
   }
 
+  return ranks_.exchange_all(out);
+}
+
+std::vector<World::Arrival> World::arrivals_in(const std::vector<Bytes>& messages) const {
   std::vector<Arrival> arrivals;
-  for (const Bytes& message : ranks_.exchange_all(out)) {
-    ByteReader reader(message);
+  for (std::size_t m = 0; m < messages.size(); ++m) {
+    ByteReader reader(messages[m]);
     while (!reader.empty()) {
       Arrival& arrival = arrivals.emplace_back();
       reader.take(&arrival.particle, 1);
       reader.take(&arrival.origin, 1);
-      std::int64_t count = 0;
-      reader.take(&count, 1);
-      for (; count > 0; --count) {
-        Arrival::Pair& pair = arrival.pairs.emplace_back();
-        reader.take(&pair.partner, 1);
-        pair.history.resize(pairs.width());
-        reader.take(pair.history.data(), pairs.width());
-      }
-      for (std::size_t b = 0; b < body_contacts_.size(); ++b) {
+      arrival.message = m;
+      arrival.histories = reader.position();
+      const auto pass = [&](std::size_t width) {
+        std::size_t count = 0;
         reader.take(&count, 1);
-        for (; count > 0; --count) {
-          std::int64_t facet = 0;
-          reader.take(&facet, 1);
-          Arrival::Touch& touch = arrival.touches.emplace_back();
-          touch.body = b;
-          touch.facet = static_cast<int>(facet);
-          touch.history.resize(body_contacts_[b].history_width());
-          reader.take(touch.history.data(), touch.history.size());
-        }
-      }
+        reader.skip(count * (sizeof(std::int64_t) + width * sizeof(double)));
+      };
+      pass(pairs_.history_width());
+      for (const BodyContacts& contacts : body_contacts_) pass(contacts.history_width());
     }
   }
   return arrivals;
+}
+
+// Keeps the histories of an arrival, as exchange_leaving has written them.
+void World::keep_histories(std::uint32_t grain, ByteReader reader) {
+  std::int64_t name = 0;
+  std::vector<double> values;
+  const auto each = [&](std::size_t width, const auto& keep) {
+    std::int64_t count = 0;
+    values.resize(width);
+    for (reader.take(&count, 1); count > 0; --count) {
+      reader.take(&name, 1);
+      reader.take(values.data(), width);
+      keep();
+    }
+  };
+  each(pairs_.history_width(), [&] { pairs_.keep(grain, name, values.data()); });
+  for (BodyContacts& contacts : body_contacts_)
+    each(contacts.history_width(),
+         [&] { contacts.keep(grain, static_cast<int>(name), values.data()); });
 }
 
 // New numbers of the grains owned till now, kGone for those that leave, then of the arrivals: cell
