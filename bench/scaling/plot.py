@@ -8,7 +8,7 @@ PARTS = [  # of a step, from the bottom up
     ("agree", "agreeing, waiting", "#e45756"),
     ("rebuild", "lists of ghosts, migration", "#b79a20"),
 ]
-LABELS = {"tiles": "8 x 8 on a node", "published speed": "0.448 M/s a core"}
+LABELS = {"tiles": "8 x 8 a node", "published speed": "0.448 M/s", "threads": "of 8 cores"}
 WIDTH, HEIGHT, LEFT, TOP, BOTTOM = 900, 420, 60, 20, 60
 LEGEND = 290
 

@@ -25,7 +25,7 @@ PUBLISHED_RATE = 0.448e6  # of the publication whose bed this is, on cores of 20
 STEPS_PER_REBUILD = 50
 # Alltoallv sends as many messages as the square of the ranks: beyond this many the simulator would
 # be busy for long, and the time is taken as linear in the ranks.
-EXCHANGE_LIMIT = 1024
+EXCHANGE_LIMIT = 2048
 # The simulator's own corrections of latency and bandwidth are those of an old Ethernet cluster.
 # Collectives as Open MPI chooses them at these sizes, but for Alltoallv, whose ring is the one
 # that the simulator's memory holds.
@@ -55,7 +55,7 @@ def thinned_platform(layers):
                   (HERE / "platform.xml").read_text())
 
 
-def simulate(driver, ranks, rate, exchanges, nodes, layers):
+def simulate(driver, ranks, rate, exchanges, nodes, layers, cores):
     with tempfile.TemporaryDirectory() as folder:
         hosts = pathlib.Path(folder) / "hosts"
         hosts.write_text("".join(f"node-{node}\n" for node in nodes))
@@ -64,7 +64,7 @@ def simulate(driver, ranks, rate, exchanges, nodes, layers):
         command = ["smpirun", "-no-privatize", "-np", str(ranks), "-hostfile", str(hosts),
                    "-platform", str(platform), *OPTIONS,
                    f"--cfg=smpi/send-is-detached-thresh:{65536 * layers // LAYERS}", str(driver), "steps",
-                   str(rate), str(int(exchanges)), str(layers)]
+                   str(rate), str(int(exchanges)), str(layers), str(cores)]
         done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, text=True, check=False)
     lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
     if done.returncode != 0 or not lines:
@@ -72,17 +72,17 @@ def simulate(driver, ranks, rate, exchanges, nodes, layers):
     return json.loads(lines[-1])
 
 
-def finish(point, exchange_per_rank):
+def finish(point, exchange_per_rank, cores):
     """Adds what a rebuild costs each step, and the efficiency against one core alone."""
     is_simulated = point["exchange"] >= 0
     if not is_simulated:
         point["exchange"] = exchange_per_rank * point["ranks"]
     point["exchange_is_simulated"] = is_simulated
     point["rebuild_share"] = (point["rebuild"] + point["exchange"]) / STEPS_PER_REBUILD
-    ideal = point["grains"] / point["rate"] / point["ranks"]
+    ideal = point["grains"] / point["rate"] / point["ranks"] / cores
     point["ideal"] = ideal
     # One core alone makes new lists too: 400 ns a grain.
-    alone = ideal + point["grains"] * 400e-9 / STEPS_PER_REBUILD / point["ranks"]
+    alone = ideal + point["grains"] * 400e-9 / STEPS_PER_REBUILD / point["ranks"] / cores
     point["time_per_step"] = point["step"] + point["rebuild_share"]
     point["efficiency"] = alone / point["time_per_step"]
 
@@ -115,13 +115,13 @@ def main():
 
     points, exchange_per_rank = [], 0.0
 
-    def run(name, ranks, rate, nodes):
+    def run(name, ranks, rate, nodes, cores=1):
         exchanges = ranks <= EXCHANGE_LIMIT
-        point = simulate(driver, ranks, rate, exchanges, nodes, options.layers)
+        point = simulate(driver, ranks, rate, exchanges, nodes, options.layers, cores)
         nonlocal exchange_per_rank
         if exchanges:
             exchange_per_rank = point["exchange"] / ranks
-        finish(point, exchange_per_rank)
+        finish(point, exchange_per_rank, cores)
         point["case"] = name
         points.append(point)
         print(table_row(point), flush=True)
@@ -135,10 +135,12 @@ def main():
         if ranks == 3072:
             widest = last
     if any(point["ranks"] == 3072 for point in points):
-        print("\nat 3072 ranks, 8 x 8 columns on a node; then at the publication's speed of a core")
+        print("\n3072 cores: 8 x 8 columns on a node; a core as fast as the publication's; "
+              "384 ranks of 8 cores")
         tiles = tiles_of_nodes(3072, widest["columns"])
         run("tiles", 3072, RATE, tiles)
         run("published speed", 3072, PUBLISHED_RATE, rows_of_nodes(3072, None))
+        run("threads", 384, RATE, [rank * 8 // CORES for rank in range(384)], 8)
     if options.svg:
         options.svg.write_text(efficiency_plot(points))
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One strong-scaling point on simulated ranks; see docs/performance/scaling.md. Built by smpicxx
 // and started by bench/scaling/run.py:
-//   scaling_driver steps RATE EXCHANGE LAYERS
+//   scaling_driver steps RATE EXCHANGE LAYERS CORES
 //     RATE      particle-steps per second and core
 //     EXCHANGE  1 with the migration of grains, 0 without
 //     LAYERS    of grains on top of each other that are there; each stands for 131 / LAYERS, and
 //               the network must be slower by that much
+//     CORES     of each rank, among which all its work is divided evenly
 //   scaling_driver packing   real time of a halo update; on two ranks
 #include <chrono>
 #include <cstdio>
@@ -87,10 +88,11 @@ double mean(const Communicator& ranks, double seconds) {
          ranks.size();
 }
 
-void run_steps(const Communicator& ranks, double rate, bool exchanges, int layers) {
+void run_steps(const Communicator& ranks, double rate, bool exchanges, int layers, int cores) {
   ScalingBed bed;
-  const double stands_for = static_cast<double>(bed.count_z) / layers;
-  bed.high.z /= stands_for;
+  const double grains_for_one = static_cast<double>(bed.count_z) / layers;
+  const double stands_for = grains_for_one / cores;
+  bed.high.z /= grains_for_one;
   bed.count_z = layers;
   const Decomposition columns(Vec3{}, bed.high, ranks.size(), ranks.rank(), bed.reach());
   std::vector<Particle> grains = bed_share(bed, columns, ranks.rank());
@@ -135,9 +137,10 @@ void run_steps(const Communicator& ranks, double rate, bool exchanges, int layer
       "{\"ranks\": %d, \"columns\": [%d, %d], \"grains\": %.0f, \"most\": %.0f, \"ghosts\": %.0f, "
       "\"rate\": %g, \"step\": %.9f, \"compute\": %.9f, \"halo\": %.9f, \"agree\": %.9f, "
       "\"rebuild\": %.9f, \"exchange\": %.9f}\n",
-      ranks.size(), columns.columns_x(), columns.columns_y(), stands_for * static_cast<double>(all),
-      stands_for * static_cast<double>(most), stands_for * static_cast<double>(all_ghosts), rate,
-      step, compute_mean, halo_mean, agree_mean, building, exchanges ? exchange : -1.0);
+      ranks.size(), columns.columns_x(), columns.columns_y(),
+      grains_for_one * static_cast<double>(all), grains_for_one * static_cast<double>(most),
+      grains_for_one * static_cast<double>(all_ghosts), rate, step, compute_mean, halo_mean,
+      agree_mean, building, exchanges ? exchange : -1.0);
   std::fflush(stdout);
 }
 
@@ -174,11 +177,11 @@ int main(int argc, char** argv) {
   const grouser::Communicator ranks;
   if (argc == 2 && std::strcmp(argv[1], "packing") == 0) {
     grouser::bench::measure_packing(ranks);
-  } else if (argc == 5 && std::strcmp(argv[1], "steps") == 0) {
+  } else if (argc == 6 && std::strcmp(argv[1], "steps") == 0) {
     grouser::bench::run_steps(ranks, std::atof(argv[2]), std::atoi(argv[3]) != 0,
-                              std::atoi(argv[4]));
+                              std::atoi(argv[4]), std::atoi(argv[5]));
   } else {
-    std::fputs("scaling_driver: steps RATE EXCHANGE LAYERS, or packing\n", stderr);
+    std::fputs("scaling_driver: steps RATE EXCHANGE LAYERS CORES, or packing\n", stderr);
     return 2;
   }
   return 0;
