@@ -2,15 +2,35 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Builds the benchmarks and runs one of them; see docs/performance/.
 #   bench/run.sh dem [--json FILE] [--quick]
+#   bench/run.sh scaling [--json FILE] [--layers N] [--ranks N,N,...] [--svg FILE]
 # dem: the DEM engine beside LAMMPS, LIGGGHTS and YADE on one settled bed. The first call prepares
 # the bed (some ten minutes on two cores) and keeps it under build/bench/data.
+# scaling: the engine's messages on 64 to 4 096 simulated ranks; needs Debian's libsimgrid-dev.
 # GROUSER_BENCH_BUILD: another build folder.
 set -euo pipefail
 root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
 build=${GROUSER_BENCH_BUILD:-$root/build/bench}
 
+scaling() {
+  if ! command -v smpicxx >/dev/null; then
+    echo "bench: smpicxx is missing: apt-get install libsimgrid-dev" >&2
+    exit 2
+  fi
+  mkdir -p -- "$build/bin"
+  (cd -- "$root" && smpicxx -std=c++20 -O3 -I. bench/scaling/{bed_share,scaling_driver}.cpp \
+    engine/core/{communicator,decomposition,halo}.cpp base/{check,errors}.cpp \
+    -o "$build/bin/scaling_driver")
+  python3 "$root/bench/scaling/run.py" "$build/bin/scaling_driver" \
+    --svg "$root/docs/performance/scaling.svg" "$@"
+}
+
+if [ "${1:-}" = scaling ]; then
+  shift
+  scaling "$@"
+  exit 0
+fi
 if [ "${1:-}" != dem ]; then
-  sed -n '3,8s/^# \{0,1\}//p' -- "${BASH_SOURCE[0]}" >&2
+  sed -n '3,10s/^# \{0,1\}//p' -- "${BASH_SOURCE[0]}" >&2
   exit 2
 fi
 shift

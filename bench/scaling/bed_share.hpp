@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "engine/core/decomposition.hpp"
+#include "engine/core/particle.hpp"
+
+namespace grouser::bench {
+
+/// The bed of configs/campaigns/wheel_71cm_full.yaml as far as messages see it.
+struct ScalingBed {
+  Vec3 high{1.2192, 0.5334, 0.2006};  ///< corner opposite to the origin [m]
+  int count_x = 793;                  ///< grains along x; the product is the bed's count to 0.03 %
+  int count_y = 347;
+  int count_z = 131;
+  double largest_radius = 1.145e-3;  ///< [m]
+  double skin = 0.1619e-3;           ///< a tenth of the mean diameter, as the engine takes it [m]
+  double contact_length = 1.65e-3;   ///< mean distance of the centres of a pair [m]
+
+  double grains() const { return 1.0 * count_x * count_y * count_z; }
+  double reach() const { return (2.0 * largest_radius + skin) * (1.0 + 1e-9); }
+};
+
+/// Grains of this rank's column: one at a random place of each cell of a lattice, which spreads
+/// them evenly over any column without any column getting whole layers. They overlap and have no
+/// radii. Local.
+std::vector<Particle> bed_share(const ScalingBed& bed, const Decomposition& columns, int rank);
+
+/// Moves grains by up to `way` along x and y, each its own way. Local.
+void stir(double way, std::vector<Particle>& grains);
+
+}  // namespace grouser::bench
