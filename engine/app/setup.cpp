@@ -3,14 +3,14 @@
 
 #include <algorithm>
 
+#include "base/columns.hpp"
+#include "base/size_curve.hpp"
 #include "engine/terrain/bed.hpp"
 #include "engine/terrain/shapes.hpp"
 
 namespace grouser {
 namespace {
 
-// Of the mean grain diameter: wide enough to keep a list for tens of steps of a moving bed.
-constexpr double kSkin = 0.1;
 // Grains thrown up stay in the world up to this far above the walls [m].
 constexpr double kHeadroom = 2.0;
 
@@ -40,7 +40,7 @@ World make_world(const Communicator& ranks, const Case& input) {
   settings.gravity = input.gravity;
   settings.time_step = time_step_of(input);
   settings.largest_radius = 0.5 * sizes.largest();
-  settings.skin = kSkin * sizes.mean();
+  settings.skin = list_skin(input.grains);
   settings.law = input.contact.law;
   settings.rolling = input.contact.rolling;
   settings.grain = solid_of(input.grains.solid);
