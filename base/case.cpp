@@ -3,16 +3,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <limits>
-#include <numbers>
 
 #include "base/hash.hpp"
+#include "base/size_curve.hpp"
+#include "base/stiffness_scale.hpp"
 #include "base/substitution.hpp"
+#include "base/time_step.hpp"
+#include "base/units.hpp"
 
 namespace grouser {
 namespace {
+
+// Every rank draws them all before the first step.
+constexpr double kMostGrains = 1e10;
 
 constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
 
@@ -79,6 +84,9 @@ void describe_grains(FieldVisitor& v, GrainsCase& g) {
 void describe_contact(FieldVisitor& v, ContactCase& c) {
   v.word({"law", "normal and tangential contact law", kOptional}, c.law, {"hertz_mindlin"});
   v.word({"rolling", "rolling resistance law", kOptional}, c.rolling, {"none", "elastic_plastic"});
+  v.quantity({"stiffness_scale",
+              "factor on every Young's modulus in contacts, for longer steps; see docs", kOptional},
+             c.stiffness_scale, "1", Range::above_up_to(0.0, 1.0));
   v.group({"grain_grain", "surface of grains against each other"},
           [&](FieldVisitor& inner) { describe_surface(inner, c.grain_grain); });
   v.group({"grain_box", "surface of grains against the box"},
@@ -169,8 +177,9 @@ void describe_wheel_motion(FieldVisitor& v, WheelCase& w) {
 void describe_numerics(FieldVisitor& v, NumericsCase& n) {
   v.quantity({"rayleigh_fraction", "time step over the smallest Rayleigh time", kOptional},
              n.rayleigh_fraction, "1", Range::above_up_to(0.0, 0.5));
-  v.quantity({"time_step", "time step; 0 = from rayleigh_fraction", kOptional}, n.time_step, "s",
-             Range::not_negative());
+  v.quantity(
+      {"time_step", "time step; 0 = from rayleigh_fraction or the shortest collision", kOptional},
+      n.time_step, "s", Range::not_negative());
   v.quantity(
       {"max_overlap", "overlap over the smaller radius at which the run is broken", kOptional},
       n.max_overlap, "1", Range::above_up_to(0.0, 1.0));
@@ -189,13 +198,6 @@ void describe_output(FieldVisitor& v, OutputCase& o) {
 double largest_diameter(const GrainsCase& grains) {
   return grains.size_curve.empty() ? 0.0
                                    : grains.size_curve.back().diameter * grains.coarse_graining;
-}
-
-// For messages: three digits tell enough.
-std::string rounded(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
 }
 
 }  // namespace
@@ -220,22 +222,21 @@ void describe(FieldVisitor& v, Case& c) {
           [&](FieldVisitor& inner) { describe_numerics(inner, c.numerics); });
   v.group({"output", "what is written how often", kOptional},
           [&](FieldVisitor& inner) { describe_output(inner, c.output); });
-  const double rayleigh = rayleigh_time(c.grains);
-  v.rule("numerics.time_step", c.numerics.time_step <= rayleigh,
-         "is " + rounded(c.numerics.time_step) +
-             " s, over the Rayleigh time of the smallest grain, " + rounded(rayleigh) +
-             " s: contacts would gain energy until the run breaks down",
-         "give " + rounded(kSoundRayleighShare * rayleigh) +
-             " s or less, or leave it out: it is then rayleigh_fraction of that time");
+  describe_time_step(v, c);
+  const double grains = grain_count(c);
+  v.rule("grains.size_curve", grains <= kMostGrains,
+         "comes to " + rounded(grains) + " grains in the bed",
+         "over 1e10 no machine holds them; look at the units of diameters and box, or raise "
+         "coarse_graining");
   v.rule("box", largest_diameter(c.grains) < std::min({c.box.length, c.box.width, c.box.depth}),
          "is smaller than one grain",
          "the largest grain, coarse graining included, is " +
-             std::to_string(largest_diameter(c.grains) * 1e3) + " mm");
+             rounded(largest_diameter(c.grains) * 1e3) + " mm");
   v.rule("bed", c.bed.depth <= c.box.depth, "depth is above the box walls",
          "the walls are as high as box.depth");
   v.rule("bed", c.bed.depth >= largest_diameter(c.grains), "depth is less than one grain",
          "the largest grain, coarse graining included, is " +
-             std::to_string(largest_diameter(c.grains) * 1e3) + " mm");
+             rounded(largest_diameter(c.grains) * 1e3) + " mm");
   v.rule("wheel", !c.has_wheel || c.wheel.start * c.box.length >= 0.25 * c.wheel.diameter,
          "starts in the back wall", "start must leave a quarter of the diameter behind the axle");
   v.rule("wheel", !c.has_wheel || c.wheel.width < c.box.width, "is wider than the box", "");
@@ -276,32 +277,10 @@ double run_duration(const Case& input) {
   return wheel.settle_time + drive;
 }
 
-double rayleigh_time(const GrainsCase& grains) {
-  if (grains.size_curve.empty()) return 0.0;
-  const double nu = grains.solid.poisson_ratio;
-  const double shear = grains.solid.young_modulus / (2.0 * (1.0 + nu));
-  const double smallest = grains.size_curve.front().diameter * grains.coarse_graining;
-  return std::numbers::pi * 0.5 * smallest * std::sqrt(grains.density / shear) /
-         (0.1631 * nu + 0.8766);
-}
-
-double time_step_of(const Case& input) {
-  if (input.numerics.time_step > 0.0) return input.numerics.time_step;
-  return input.numerics.rayleigh_fraction * rayleigh_time(input.grains);
-}
-
 std::vector<Problem> case_warnings(const YamlNode& node, const Case& input) {
-  const double share = time_step_of(input) / rayleigh_time(input.grains);
-  if (share <= kSoundRayleighShare) return {};
-  const bool is_given = input.numerics.time_step > 0.0;
-  const std::string key = is_given ? "numerics.time_step" : "numerics.rayleigh_fraction";
-  const YamlNode* at = node.find_path(key);
-  if (at == nullptr) at = &node;
-  return {{at->file, at->line, at->column, key,
-           "makes the time step " + rounded(share) +
-               " of the Rayleigh time of the smallest grain, " +
-               rounded(rayleigh_time(input.grains)) + " s",
-           "over " + rounded(kSoundRayleighShare) + " of it contacts may gain energy"}};
+  std::vector<Problem> warnings = time_step_warnings(node, input);
+  for (const Problem& one : stiffness_warnings(node, input)) warnings.push_back(one);
+  return warnings;
 }
 
 namespace {
@@ -333,7 +312,14 @@ std::string content_key(const Case& input) {
   copy.output = OutputCase{};
   copy.numerics.max_overlap = NumericsCase{}.max_overlap;
   leave_out_unused(copy.wheel);
-  return hash_text(emit_yaml(write_case(copy)));
+  // A step that follows from the input alone is in the key by the input, unless the shortest
+  // collision sets it, which is younger than the first keys. So is the scale of the stiffness.
+  if (is_step_of_collision(copy)) copy.numerics.time_step = time_step_of(copy);
+  YamlNode node = write_case(copy);
+  if (copy.contact.stiffness_scale == 1.0)
+    std::erase_if(node.find("contact")->entries,
+                  [](const auto& entry) { return entry.first == "stiffness_scale"; });
+  return hash_text(emit_yaml(node));
 }
 
 }  // namespace grouser

@@ -54,6 +54,7 @@ struct GrainsCase {
 struct ContactCase {
   std::string law = "hertz_mindlin";
   std::string rolling = "none";
+  double stiffness_scale = 1.0;  ///< factor on every Young's modulus in contacts [1]
   SurfaceCase grain_grain;
   SurfaceCase grain_box;
   SurfaceCase grain_wheel;
@@ -99,7 +100,7 @@ struct WheelCase {
 
 struct NumericsCase {
   double rayleigh_fraction = 0.2;  ///< time step over the smallest Rayleigh time [1]
-  double time_step = 0.0;          ///< 0 = from rayleigh_fraction [s]
+  double time_step = 0.0;          ///< 0 = automatic, see time_step_of [s]
   double max_overlap = 0.1;        ///< largest overlap over the smaller radius before the run is
                                    ///< judged broken [1]
 };
@@ -137,17 +138,6 @@ Case bed_case(const Case& input);
 /// Simulated time of a run with a wheel: settling, then the travel with its linear rise of speed
 /// [s]. 0 for a bed, whose length is known only when it has settled. Local.
 double run_duration(const Case& input);
-
-/// Smallest time in which a shear wave rounds a grain, Rayleigh's surface wave [s]. Knows the
-/// grains alone: a contact with a much stiffer body is shorter. 0 without a size curve. Source:
-/// Sheng, Lawrence, Briscoe, Thornton 2004, eq. 5.
-double rayleigh_time(const GrainsCase& grains);
-
-/// Above this share of the Rayleigh time a step may let contacts gain energy.
-inline constexpr double kSoundRayleighShare = 0.3;
-
-/// Time step of a case [s]: given, or its fraction of the Rayleigh time. Local.
-double time_step_of(const Case& input);
 
 /// What is allowed but seldom meant, at its place in `node`, from which `input` was read without
 /// problems. Local.

@@ -97,4 +97,10 @@ std::string format_quantity(double value, const std::string& si_unit) {
   return si_unit == "1" ? format_number(value) : format_number(value) + " " + si_unit;
 }
 
+std::string rounded(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
 }  // namespace grouser

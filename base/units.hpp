@@ -19,4 +19,7 @@ std::string format_quantity(double value, const std::string& si_unit);
 /// Shortest decimal text that reads back to the same double. Local.
 std::string format_number(double value);
 
+/// For messages: three digits tell enough. Local.
+std::string rounded(double value);
+
 }  // namespace grouser

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
+#include "base/time_step.hpp"
 #include "campaign/cli/exit_codes.hpp"
 #include "campaign/cli/find.hpp"
 #include "campaign/cli/json_text.hpp"
@@ -23,6 +25,7 @@ Json json_of(const PlannedRun& run) {
   return Json{{"label", run.label},
               {"waits_for_bed", run.bed_key},
               {"simulated_time_s", run_duration(run.input)},
+              {"time_step_s", time_step_of(run.input)},
               {"chunk_ends_s", ends}};
 }
 
@@ -33,6 +36,21 @@ std::string ends_text(const PlannedRun& run) {
     if (i == kShown) return text + ", ...";
     const auto& end = run.chunk_ends[i];
     text += (i == 0 ? "" : ", ") + (end ? short_number(*end) + " s" : std::string("end"));
+  }
+  return text;
+}
+
+// Each distinct step of the runs once, after the first run that has it.
+std::string step_lines(const Plan& plan) {
+  constexpr std::size_t kShown = 6;
+  std::vector<std::string> seen;
+  std::string text;
+  for (const PlannedRun& run : plan.runs) {
+    const std::string line = time_step_text(run.input);
+    if (std::find(seen.begin(), seen.end(), line) != seen.end()) continue;
+    if (seen.size() == kShown) return text + "...\n";
+    seen.push_back(line);
+    text += run.label + ": " + line + "\n";
   }
   return text;
 }
@@ -60,7 +78,8 @@ int plan_verb(const Options& options) {
             << jobs << " jobs at least, scheduler " << plan.settings.scheduler << ", "
             << resources.ranks << " ranks each"
             << (resources.walltime > 0.0 ? ", walltime " + duration_text(resources.walltime) : "")
-            << "\n";
+            << "\n"
+            << step_lines(plan);
   return exit_codes::kOk;
 }
 

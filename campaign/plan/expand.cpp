@@ -8,7 +8,9 @@
 #include <tuple>
 
 #include "base/atomic_file.hpp"
+#include "base/columns.hpp"
 #include "base/hash.hpp"
+#include "base/units.hpp"
 
 namespace grouser {
 namespace {
@@ -190,7 +192,25 @@ class Planner {
     return true;
   }
 
+  // The engine would refuse them only when the job has waited and begun.
+  void check_ranks(const Case& input) {
+    const std::int64_t ranks = file_.settings.resources.ranks;
+    const double reach = list_reach(input.grains);
+    const BoxCase& box = input.box;
+    if (cut_columns(box.length, box.width, ranks, reach)) return;
+    const auto columns = [reach](double room) {
+      return std::max<std::int64_t>(1, static_cast<std::int64_t>(room / reach));
+    };
+    std::int64_t most = std::min(ranks - 1, columns(box.length) * columns(box.width));
+    while (!cut_columns(box.length, box.width, most, reach)) --most;
+    problems_.add(node_or(node_or(file_.root, "resources"), "ranks"), "resources.ranks",
+                  std::to_string(ranks) + " ranks cut the box into columns narrower than the " +
+                      rounded(1e3 * reach) + " mm that a contact reaches",
+                  "the next lower number that fits is " + std::to_string(most));
+  }
+
   void finish(PlannedRun& run, const std::vector<std::size_t>& choice) {
+    check_ranks(run.input);
     run.key = content_key(run.input);
     const YamlNode& at = choice.empty() ? node_or(file_.root, "case")
                                         : point_node(file_, choice.size() - 1, choice.back());

@@ -83,10 +83,7 @@ Run::Run(const Communicator& ranks, const EngineOptions& options, const Case& in
   checkpoint_steps_ = steps_in(input_.output.checkpoint_interval, dt);
   if (input_.output.snapshot_interval > 0.0)
     snapshot_steps_ = steps_in(input_.output.snapshot_interval, dt);
-  const double rayleigh = rayleigh_time(input_.grains);
-  spdlog::info("app time_step={} s, {} of the Rayleigh time {} s", dt, dt / rayleigh, rayleigh);
-  if (dt > 0.3 * rayleigh)
-    spdlog::warn("app time step is over 0.3 of the Rayleigh time; contacts may gain energy");
+  log_time_step(input_);
 
   on_first_rank(ranks_,
                 [&] { fs::create_directories(options_.run_directory / run_files::kEvents); });

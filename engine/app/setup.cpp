@@ -1,20 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/app/setup.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 
+#include "base/columns.hpp"
+#include "base/size_curve.hpp"
+#include "base/time_step.hpp"
 #include "engine/terrain/bed.hpp"
 #include "engine/terrain/shapes.hpp"
 
 namespace grouser {
 namespace {
 
-// Of the mean grain diameter: wide enough to keep a list for tens of steps of a moving bed.
-constexpr double kSkin = 0.1;
 // Grains thrown up stay in the world up to this far above the walls [m].
 constexpr double kHeadroom = 2.0;
 
-Solid solid_of(const SolidCase& s) { return {s.young_modulus, s.poisson_ratio}; }
+Solid solid_of(const Case& input, const SolidCase& s) {
+  return {input.contact.stiffness_scale * s.young_modulus, s.poisson_ratio};
+}
 Surface surface_of(const SurfaceCase& s) { return {s.restitution, s.friction, s.rolling_friction}; }
 
 // Rolling resistance holds grains apart as friction does; both are lowered in the same proportion.
@@ -40,20 +45,26 @@ World make_world(const Communicator& ranks, const Case& input) {
   settings.gravity = input.gravity;
   settings.time_step = time_step_of(input);
   settings.largest_radius = 0.5 * sizes.largest();
-  settings.skin = kSkin * sizes.mean();
+  settings.skin = list_skin(input.grains);
   settings.law = input.contact.law;
   settings.rolling = input.contact.rolling;
-  settings.grain = solid_of(input.grains.solid);
+  settings.grain = solid_of(input, input.grains.solid);
   settings.grain_grain = surface_of(input.contact.grain_grain);
   if (!input.has_wheel) settings.grain_grain = preparation_surface(input);
 
   World world(ranks, settings);
   world.add_body("box", box_mesh(input.box.length, input.box.width, walls),
-                 solid_of(input.box.solid), surface_of(input.contact.grain_box), false);
+                 solid_of(input, input.box.solid), surface_of(input.contact.grain_box), false);
   if (input.has_wheel)
-    world.add_body("wheel", wheel_mesh(input.wheel), solid_of(input.wheel.solid),
+    world.add_body("wheel", wheel_mesh(input.wheel), solid_of(input, input.wheel.solid),
                    surface_of(input.contact.grain_wheel), true);
   return world;
+}
+
+void log_time_step(const Case& input) {
+  spdlog::info("app {}", time_step_text(input));
+  for (const Problem& one : case_warnings(YamlNode{}, input))
+    spdlog::warn("app {} {}; {}", one.key, one.problem, one.hint);
 }
 
 void fill(World& world, const Case& input) {

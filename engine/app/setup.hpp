@@ -15,6 +15,9 @@ inline constexpr std::size_t kWheelBody = 1;
 /// filling while a bed settles, by one wheel diameter while a wheel drives. Local.
 World make_world(const Communicator& ranks, const Case& input);
 
+/// Says the time step, what decided it and what is seldom meant. Local.
+void log_time_step(const Case& input);
+
 /// Fills the world's share of the random loose packing. Local.
 void fill(World& world, const Case& input);
 

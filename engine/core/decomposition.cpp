@@ -2,8 +2,8 @@
 #include "engine/core/decomposition.hpp"
 
 #include <algorithm>
-#include <limits>
 
+#include "base/columns.hpp"
 #include "base/errors.hpp"
 
 namespace grouser {
@@ -12,19 +12,7 @@ Decomposition::Decomposition(const Vec3& low, const Vec3& high, int size, int ra
     : low_(low), high_(high) {
   const double length = high.x - low.x;
   const double width = high.y - low.y;
-  double best = std::numeric_limits<double>::infinity();
-  bool found = false;
-  for (int nx = 1; nx <= size; ++nx) {
-    if (size % nx != 0) continue;
-    const int ny = size / nx;
-    if ((nx > 1 && length / nx < reach) || (ny > 1 && width / ny < reach)) continue;
-    const double cut = (nx - 1) * width + (ny - 1) * length;  // what the halo traffic follows
-    if (cut >= best) continue;
-    best = cut;
-    columns_x_ = nx;
-    columns_y_ = ny;
-    found = true;
-  }
+  const std::optional<Columns> found = cut_columns(length, width, size, reach);
   if (!found)
     throw ConfigError({Problem{"", 0, 0, "ranks",
                                std::to_string(size) +
@@ -32,6 +20,8 @@ Decomposition::Decomposition(const Vec3& low, const Vec3& high, int size, int ra
                                    "contact (" +
                                    std::to_string(reach) + " m)",
                                "use fewer ranks"}});
+  columns_x_ = found->x;
+  columns_y_ = found->y;
   at_x_ = rank / columns_y_;
   at_y_ = rank % columns_y_;
 }

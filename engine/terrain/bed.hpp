@@ -2,32 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "base/case.hpp"
+#include "base/size_curve.hpp"
 #include "engine/dem/world.hpp"
 
 namespace grouser {
-
-/// Draws grain diameters from a size curve.
-class SizeCurve {
- public:
-  /// Between two points of the curve diameters are spread evenly by number. A curve by mass is
-  /// turned into one by number so that each piece holds its mass. Diameters include coarse
-  /// graining.
-  explicit SizeCurve(const GrainsCase& grains);
-
-  /// Diameter [m] below which a fraction `unit` (0 to 1) of all grains is.
-  double diameter_at(double unit) const;
-  double smallest() const { return diameter_.front(); }
-  double largest() const { return diameter_.back(); }
-  double mean() const;         ///< by number [m]
-  double mean_volume() const;  ///< of a grain [m3]
-
- private:
-  std::vector<double> diameter_;
-  std::vector<double> finer_;  // by number
-};
 
 /// Places of the random loose filling: a lattice of cells as wide as the largest grain, filled from
 /// the floor up, each with one grain at a random place inside. Sizes and places depend on seed and

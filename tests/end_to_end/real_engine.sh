@@ -295,9 +295,10 @@ broken() {
   sed -i 's/max_overlap: 0.01 %/max_overlap: 30 %/' soft/case.yaml
   launch 1 soft --bed bed
   expect_same soft "after a breakdown"
-  # The square of this speed is not a number any more.
+  # The square of the speed that this torque makes is not a number any more; a speed that is given
+  # would be refused.
   expect_breakdown nan 'a force or velocity is not a number' \
-    'forward_speed: 0.1 m/s, drive: rim_speed, rim_speed: 1e200 m/s'
+    'forward_speed: 0.1 m/s, drive: torque, torque: 1e200 N m'
   # Grains fly over walls and headroom.
   expect_breakdown lost 'a grain has left the box' \
     'forward_speed: 0.03 m/s, drive: rim_speed, rim_speed: 25 m/s'

@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 
+#include "base/time_step.hpp"
 #include "engine/terrain/bed.hpp"
 #include "tests/engine/small_world.hpp"
 
@@ -181,7 +182,7 @@ TEST(TimeStep, IsTheAskedShareOfTheRayleighTime) {
   Case input = coarse_case();
   // pi r sqrt(rho/G)/(0.1631 nu + 0.8766) with r = 5 mm, rho = 2650, G = 20 MPa, nu = 0.25.
   const double expected = std::numbers::pi * 5e-3 * std::sqrt(2650.0 / 2e7) / 0.917375;
-  EXPECT_NEAR(rayleigh_time(input.grains), expected, 1e-9);
+  EXPECT_NEAR(rayleigh_time(input), expected, 1e-9);
   EXPECT_NEAR(time_step_of(input), 0.2 * expected, 1e-9);
   input.numerics.time_step = 1e-6;
   EXPECT_EQ(time_step_of(input), 1e-6);

@@ -60,6 +60,15 @@ TEST(Restitution, OfAPairIsTheOneAskedForAtAnySpeed) {
           << wanted << " at " << speed << " m/s";
 }
 
+TEST(Restitution, EightStepsToACollisionKeepItNearTheOneAskedFor) {
+  // Bounds of base/time_step.hpp; where in a step the contact begins goes with the number of steps.
+  for (double steps = 8.0; steps < 9.0; steps += 0.05) {
+    EXPECT_NEAR(pair_restitution(1.0, 0.5, steps), 1.0, 0.006) << steps;
+    EXPECT_GT(pair_restitution(0.5, 0.5, steps), 0.47) << steps;
+    EXPECT_LT(pair_restitution(0.5, 0.5, steps), 0.53) << steps;
+  }
+}
+
 TEST(Restitution, ConvergesWithTheTimeStep) {
   const double coarse = std::abs(pair_restitution(0.5, 0.5, 50) - 0.5);
   const double fine = std::abs(pair_restitution(0.5, 0.5, 800) - 0.5);

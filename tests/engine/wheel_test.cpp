@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/app/setup.hpp"
+#include "engine/core/state_io.hpp"
 #include "engine/terrain/bed.hpp"
 #include "engine/terrain/wheel.hpp"
 
@@ -245,6 +246,37 @@ TEST(Wheel, ItsStateSurvivesACheckpoint) {
   EXPECT_EQ(a.sinkage, b.sinkage);
   EXPECT_EQ(a.travel, b.travel);
   EXPECT_EQ(a.max_overlap, b.max_overlap);
+}
+
+// A power of two, so that scaling rounds nothing.
+TEST(StiffnessScale, GivesTheBitsOfSofterGrainsBoxAndWheel) {
+  const auto hash_after = [](const Case& input) {
+    World world = make_world(Communicator::alone(), input);
+    fill(world, input);
+    // In the filling, so that grains touch it from the first step.
+    world.body(kWheelBody).motion.position = {0.1, 0.08, 0.1};
+    for (int i = 0; i < 300; ++i) world.step();
+    EXPECT_GT(world.contacts(), 0);
+    State state;
+    world.save_state(state);
+    std::string hashes;
+    for (const StateTable& table : state)
+      hashes += std::to_string(hash_table(world.ranks(), table)) + " ";
+    return hashes;
+  };
+  Case scaled = toy();
+  scaled.numerics.time_step = 1e-4;
+  scaled.box.solid.young_modulus = 3e7;
+  scaled.wheel.solid.young_modulus = 7e7;
+  Case softer = scaled;
+  scaled.contact.stiffness_scale = 0.125;
+  EXPECT_NE(hash_after(scaled), hash_after(softer));
+  softer.grains.solid.young_modulus *= 0.125;
+  const Case grains_only = softer;
+  softer.box.solid.young_modulus *= 0.125;
+  softer.wheel.solid.young_modulus *= 0.125;
+  EXPECT_EQ(hash_after(scaled), hash_after(softer));
+  EXPECT_NE(hash_after(scaled), hash_after(grains_only));
 }
 
 }  // namespace
