@@ -23,8 +23,7 @@ std::optional<Columns> cut_columns(double length, double width, std::int64_t ran
     const std::int64_t ny = ranks / nx;
     if (ranks % nx != 0 || !fits(width, ny)) continue;
     // What the halo traffic follows.
-    const double cut =
-        static_cast<double>(nx - 1) * width + static_cast<double>(ny - 1) * length;
+    const double cut = static_cast<double>(nx - 1) * width + static_cast<double>(ny - 1) * length;
     if (cut >= best) continue;
     best = cut;
     found = Columns{static_cast<int>(nx), static_cast<int>(ny)};

@@ -88,8 +88,7 @@ Collision shortest_collision(const Case& input) {
   const auto meet = [&](const char* pair, const SolidCase& other, double m, double radius) {
     const double stiffness = 1.0 / (softness(input.grains.solid) + softness(other));
     const double v = shortest.speed;
-    const double time =
-        2.87 * std::pow(m * m / (radius * stiffness * stiffness * v), 0.2);
+    const double time = 2.87 * std::pow(m * m / (radius * stiffness * stiffness * v), 0.2);
     const double overlap =
         std::pow(15.0 * m * v * v / (16.0 * std::sqrt(radius) * stiffness), 0.4) / r;
     shortest.overlap = std::max(shortest.overlap, overlap);
@@ -104,10 +103,17 @@ Collision shortest_collision(const Case& input) {
   return shortest;
 }
 
+double collision_steps(const Case& input) {
+  const ContactCase& contact = input.contact;
+  double restitution = std::min(contact.grain_grain.restitution, contact.grain_box.restitution);
+  if (input.has_wheel) restitution = std::min(restitution, contact.grain_wheel.restitution);
+  return std::max(8.0, std::ceil(1.8 * std::pow(restitution, -0.6)));
+}
+
 double time_step_of(const Case& input) {
   if (input.numerics.time_step > 0.0) return input.numerics.time_step;
   return std::min(input.numerics.rayleigh_fraction * rayleigh_time(input),
-                  kContactShare * shortest_collision(input).time);
+                  shortest_collision(input).time / collision_steps(input));
 }
 
 bool is_step_of_collision(const Case& input) {
@@ -124,8 +130,7 @@ std::string time_step_text(const Case& input) {
                                                              : "the Rayleigh time";
   return "time step " + rounded(step) + " s, decided by " + decided + ": " +
          rounded(step / rayleigh) + " of the Rayleigh time " + rounded(rayleigh) + " s, " +
-         rounded(step / collision.time) + " of the shortest collision " +
-         collision_text(collision);
+         rounded(step / collision.time) + " of the shortest collision " + collision_text(collision);
 }
 
 void describe_time_step(FieldVisitor& v, const Case& input) {
@@ -137,10 +142,11 @@ void describe_time_step(FieldVisitor& v, const Case& input) {
              rounded(rayleigh) + " s: contacts would gain energy until the run breaks down",
          "give " + rounded(kSoundRayleighShare * rayleigh) + " s or less, or " + leave_out);
   const Collision collision = worst_collision(input);
-  v.rule("numerics.time_step", step <= collision.time,
-         "is " + rounded(step) + " s, longer than the shortest collision, " +
-             collision_text(collision) + ": grains would pass through each other",
-         "give " + rounded(kContactShare * collision.time) + " s or less, or leave it out");
+  v.rule(
+      "numerics.time_step", step <= collision.time,
+      "is " + rounded(step) + " s, longer than the shortest collision, " +
+          collision_text(collision) + ": grains would pass through each other",
+      "give " + rounded(collision.time / collision_steps(input)) + " s or less, or leave it out");
   for (const Case& one : with_bed(input)) {
     const Collision meeting = shortest_collision(one);
     const bool is_number = std::isnormal(rayleigh) && std::isnormal(meeting.time);
@@ -172,7 +178,7 @@ std::vector<Problem> time_step_warnings(const YamlNode& node, const Case& input)
        "the Rayleigh time of the smallest grain, " + rounded(rayleigh) + " s");
   if (!is_given) return warnings;
   const Collision collision = worst_collision(input);
-  warn(time_step_of(input) / collision.time, kSoundContactShare,
+  warn(time_step_of(input) / collision.time, 1.0 / (kSoundStepShare * collision_steps(input)),
        "the shortest collision, " + collision_text(collision));
   return warnings;
 }

@@ -26,6 +26,14 @@ TEST(Units, RefuseABareNumberForALength) {
   EXPECT_THROW(parse_quantity("1e308 km", "m"), std::invalid_argument);
 }
 
+TEST(Units, RefuseWhatIsNoFiniteNumberInAnySpelling) {
+  for (const char* text : {"nan", ".nan m", "NaN m", "inf m", "-inf m", ".inf m", "infinity m",
+                           "1e400 m", "1e-400 m", "1e306 km", "0x1p3 m"}) {
+    EXPECT_THROW(parse_quantity(text, "m"), std::invalid_argument) << text;
+    EXPECT_THROW(parse_quantity(text, "1"), std::invalid_argument) << text;
+  }
+}
+
 TEST(Units, WriteNumbersThatReadBackToTheSameBits) {
   for (const double value : {0.1, 1.0 / 3.0, 6.02e23, -1e-300, 0.76e-3})
     EXPECT_EQ(parse_quantity(format_quantity(value, "m"), "m"), value);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/time_step.hpp"
 #include "tests/engine/small_world.hpp"
 
 namespace grouser {
@@ -67,6 +68,18 @@ TEST(Restitution, EightStepsToACollisionKeepItNearTheOneAskedFor) {
     EXPECT_GT(pair_restitution(0.5, 0.5, steps), 0.47) << steps;
     EXPECT_LT(pair_restitution(0.5, 0.5, steps), 0.53) << steps;
   }
+}
+
+TEST(Restitution, OfStrongDampingNeedsTheStepsThatTheAutomaticStepTakes) {
+  Case input;
+  for (const double wanted : {0.01, 0.05, 0.1}) {
+    input.contact.grain_grain.restitution = wanted;
+    const double enough = collision_steps(input);
+    // Small beside 1: what such a contact is asked for is to lose nearly all.
+    for (double part = 0.0; part < 1.0; part += 0.1)
+      EXPECT_LT(pair_restitution(wanted, 0.5, enough + part), wanted + 0.06) << wanted;
+  }
+  EXPECT_GT(pair_restitution(0.01, 0.5, 8.0), 0.1);
 }
 
 TEST(Restitution, ConvergesWithTheTimeStep) {
