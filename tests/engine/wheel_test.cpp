@@ -261,7 +261,7 @@ TEST(StiffnessScale, GivesTheBitsOfSofterGrainsBoxAndWheel) {
     world.save_state(state);
     std::string hashes;
     for (const StateTable& table : state)
-      hashes += std::to_string(hash_table(world.ranks(), table)) + " ";
+      hashes += std::to_string(hash_state(world.ranks(), {table})) + " ";
     return hashes;
   };
   Case scaled = toy();
