@@ -21,9 +21,15 @@ campaign/store   base
 campaign/drive   base schedulers campaign/plan campaign/store
 campaign/report  base campaign/store
 campaign/cli     base schedulers campaign/plan campaign/store campaign/drive campaign/report
-campaign         base schedulers campaign/plan campaign/store campaign/drive campaign/report campaign/cli
+campaign         base schedulers campaign/plan campaign/store campaign/drive campaign/report campaign/cli diagnosis/cli
+diagnosis/recordings base campaign/report
+diagnosis/models     base diagnosis/recordings
+diagnosis/hypotheses base diagnosis/recordings diagnosis/models
+diagnosis/inference  base diagnosis/recordings diagnosis/models diagnosis/hypotheses
+diagnosis/report     base campaign/report diagnosis/recordings diagnosis/models diagnosis/hypotheses diagnosis/inference
+diagnosis/cli        base campaign diagnosis
 bench            base engine
-tests            base schedulers engine campaign
+tests            base schedulers engine campaign diagnosis
 '
 
 # Fences: a pattern of headers and where alone they may be included.

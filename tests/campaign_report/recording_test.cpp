@@ -62,6 +62,8 @@ points: points.csv
 TEST(Recordings, AllCommittedOnesAreSound) {
   int count = 0;
   for (const auto& entry : fs::directory_iterator(kConfigs / "recordings")) {
+    // Series are read by the diagnosis and tested there.
+    if (load_yaml(entry.path() / "recording.yaml").find("recording")->scalar != "1") continue;
     std::vector<Problem> problems;
     const Recording recording = read_recording(entry.path(), problems);
     EXPECT_EQ(text_of(problems), "");
