@@ -15,7 +15,8 @@ engine/core      base
 engine/dem       base engine/core
 engine/io        base engine/core
 engine/terrain   base engine/core engine/dem
-engine/app       base engine/core engine/dem engine/io engine/terrain
+engine/coupling  base engine/core engine/dem engine/lbm
+engine/app       base engine/core engine/dem engine/coupling engine/io engine/terrain
 campaign/plan    base schedulers
 campaign/store   base
 campaign/drive   base schedulers campaign/plan campaign/store
