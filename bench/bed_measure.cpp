@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/dem/cell_grid.hpp"
+#include "engine/core/cell_grid.hpp"
 
 namespace grouser::bench {
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Builds the benchmarks and runs one of them; see docs/performance/.
 #   bench/run.sh dem [--json FILE] [--quick]
-#   bench/run.sh scaling [--json FILE] [--layers N] [--ranks N,N,...] [--svg FILE]
+#   bench/run.sh scaling [--json FILE] [--ranks N,N,...] [--svg FILE]
 # dem: the DEM engine beside LAMMPS, LIGGGHTS and YADE on one settled bed. The first call prepares
 # the bed (some ten minutes on two cores) and keeps it under build/bench/data.
 # scaling: the engine's messages on 64 to 4 096 simulated ranks; needs Debian's libsimgrid-dev.

@@ -36,6 +36,7 @@ tests            base schedulers engine campaign diagnosis
 # Fences: a pattern of headers and where alone they may be included.
 fences='
 ^mpi[.]h$                     ^(engine/core/|tests/engine/mpi_main[.]cpp$)
+^zoltan[.]h$                  ^engine/core/
 ^(hdf5|H5[A-Za-z]*|hdf5_hl)[.]h(pp)?$  ^engine/io/
 ^(sqlite3[.]h$|SQLiteCpp/)    ^campaign/store/
 ^yaml-cpp/                    ^base/

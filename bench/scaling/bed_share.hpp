@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "engine/core/decomposition.hpp"
@@ -19,15 +20,21 @@ struct ScalingBed {
   double contact_length = 1.65e-3;   ///< mean distance of the centres of a pair [m]
 
   double grains() const { return 1.0 * count_x * count_y * count_z; }
-  double reach() const { return (2.0 * largest_radius + skin) * (1.0 + 1e-9); }
+  double reach() const { return 2.0 * largest_radius + skin; }
 };
 
-/// Grains of this rank's column: one at a random place of each cell of a lattice, which spreads
-/// them evenly over any column without any column getting whole layers. They overlap and have no
-/// radii. Local.
-std::vector<Particle> bed_share(const ScalingBed& bed, const Decomposition& columns, int rank);
+/// What a rank has. Grains that no other rank can have to do with are only counted.
+struct BedShare {
+  std::vector<Particle> grains;  ///< within two reaches of a face of the rank's box
+  std::int64_t count = 0;        ///< of all
+};
 
-/// Moves grains by up to `way` along x and y, each its own way. Local.
+/// Grains of this rank's box: one at a random place of each cell of a lattice, which spreads them
+/// evenly over any box without any getting whole layers. Radii follow the bed's size curve; the
+/// grains overlap. Local.
+BedShare bed_share(const ScalingBed& bed, const Decomposition& boxes, int rank);
+
+/// Moves grains by up to `way` along each axis, each its own way. Local.
 void stir(double way, std::vector<Particle>& grains);
 
 }  // namespace grouser::bench

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One strong-scaling point on simulated ranks; see docs/performance/scaling.md. Built by smpicxx
-// and started by bench/scaling/run.py:
-//   scaling_driver steps RATE EXCHANGE LAYERS CORES
-//     RATE      particle-steps per second and core
-//     EXCHANGE  1 with the migration of grains, 0 without
-//     LAYERS    of grains on top of each other that are there; each stands for 131 / LAYERS, and
-//               the network must be slower by that much
-//     CORES     of each rank, among which all its work is divided evenly
-//   scaling_driver packing   real time of a halo update; on two ranks
+// One point of a scaling curve on simulated ranks; see docs/performance/scaling.md. Built by
+// smpicxx and started by bench/scaling/run.py:
+//   scaling_driver steps STEP LISTS CORES OVERLAP
+//     STEP     seconds of a core for a particle-step
+//     LISTS    seconds of a core for the new lists of a grain or ghost
+//     CORES    of each rank, among which its particle-steps and lists are divided evenly
+//     OVERLAP  1 when pairs without ghosts are evaluated while ghosts are under way, else 0
+//   scaling_driver packing   real times of a halo's renewal and making; on two ranks
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -23,17 +24,19 @@ namespace {
 // Share of a particle-step that belongs to its pairs, and so is done twice for pairs between ranks:
 // contacts against sums and motion in docs/performance/log.md.
 constexpr double kPairShare = 0.6;
-constexpr double kPackingSeconds = 25e-9;   // per ghost and step; see `packing`
-constexpr double kRebuildSeconds = 400e-9;  // per grain or ghost: about 1 000 cycles
-constexpr int kSteps = 2;                   // timed; in the simulation all steps are alike
-constexpr std::size_t kBodies = 2;          // box and wheel
+constexpr double kPackingSeconds = 15e-9;  // per ghost and step; see `packing`
+constexpr double kHaloSeconds = 300e-9;    // per ghost and rebuild; see `packing`
+constexpr int kSteps = 2;                  // timed; in the simulation all steps are alike
+constexpr std::size_t kBodies = 2;         // box and wheel
 // A grain that migrates: record, origin, five pairs with seven numbers of history, counts.
 constexpr std::size_t kMigrantBytes = 96 + 24 + 8 + 5 * (8 + 7 * 8) + kBodies * 8;
 
-double now() { return simgrid::s4u::Engine::get_clock(); }
-
-// Lets simulated time pass on this rank's core of 1 Gflop/s.
-void compute(double seconds) { simgrid::s4u::this_actor::execute(seconds * 1e9); }
+struct Costs {
+  double step;
+  double lists;
+  int cores;
+  bool overlaps;
+};
 
 struct Phases {
   double compute = 0.0;
@@ -43,129 +46,171 @@ struct Phases {
   double rebuild = 0.0;
 };
 
-// Time of one rank's particle-steps. A pair between two columns is evaluated on both sides: each
-// does half of it more than its share. An area of a cut crosses as many pairs as have their
-// centres on both sides: density of pairs times half their length, which is the mean along x.
-double step_seconds(const ScalingBed& bed, const Decomposition& columns, std::size_t owned,
-                    double rate) {
-  const double dx = columns.high_x() - columns.low_x();
-  const double dy = columns.high_y() - columns.low_y();
-  double cut = 0.0;
-  for (const int side : {-1, 1}) {
-    if (columns.neighbour(side, 0) >= 0) cut += dy * bed.high.z;
-    if (columns.neighbour(0, side) >= 0) cut += dx * bed.high.z;
-  }
+double now() { return simgrid::s4u::Engine::get_clock(); }
+
+// Lets simulated time pass on this rank's core of 1 Gflop/s.
+void compute(double seconds) { simgrid::s4u::this_actor::execute(seconds * 1e9); }
+
+// Grains that pairs with ghosts count for on top of a rank's own. A pair between two boxes is
+// evaluated on both sides: each does half of it more than its share. An area of a cut crosses as
+// many pairs as have their centres on both sides: density of pairs times half their length, which
+// is the mean along an axis. Pairs are as many as grains: the share of a step is a grain's.
+double done_twice(const ScalingBed& bed, const Box& box) {
+  const auto side = [](double low, double high, double end) {
+    return std::min(high, end) - std::max(low, 0.0);
+  };
+  const double x = side(box.low.x, box.high.x, bed.high.x);
+  const double y = side(box.low.y, box.high.y, bed.high.y);
+  const double z = side(box.low.z, box.high.z, bed.high.z);
+  const auto inner_faces = [](double low, double high) {
+    return (std::isfinite(low) ? 1.0 : 0.0) + (std::isfinite(high) ? 1.0 : 0.0);
+  };
+  const double cut = inner_faces(box.low.x, box.high.x) * y * z +
+                     inner_faces(box.low.y, box.high.y) * x * z +
+                     inner_faces(box.low.z, box.high.z) * x * y;
   const double density = bed.grains() / (bed.high.x * bed.high.y * bed.high.z);
-  const double twice = 0.5 * density * cut * 0.5 * bed.contact_length;
-  return (static_cast<double>(owned) + kPairShare * twice) / rate;
+  return 0.5 * density * cut * 0.5 * bed.contact_length;
 }
 
-// As World::rebuild does: migration, count, halo. Leaves the ghosts in place.
-void rebuild(const Communicator& ranks, const Decomposition& columns, const ScalingBed& bed,
-             bool exchanges, std::vector<Particle>& grains, Halo& halo, Phases& time) {
-  double from = now();
-  if (exchanges) {
-    std::vector<Bytes> out(static_cast<std::size_t>(ranks.size()));
-    for (const Particle& grain : grains) {
-      const int owner = columns.owner_of(grain.position);
-      if (owner == ranks.rank()) continue;
-      Bytes& to = out[static_cast<std::size_t>(owner)];
+// One rank of the engine, as World has it.
+struct Rank {
+  explicit Rank(const Communicator& all)
+      : ranks(all),
+        boxes(Decomposition::even({}, bed.high, all.size())),
+        neighbours(boxes.neighbours(all.rank(), bed.reach())),
+        share(bed_share(bed, boxes, all.rank())),
+        owned(share.grains.size()),
+        halo(all) {}
+
+  double ghosts() const { return static_cast<double>(share.grains.size() - owned); }
+
+  // As World::rebuild does: migration, count, halo. Grains stay where they are here: as many come
+  // as go.
+  void rebuild(Phases& time) {
+    double from = now();
+    std::vector<Bytes> out(neighbours.size());
+    std::vector<Particle> moved = share.grains;
+    stir(0.5 * bed.skin, moved);
+    for (const Particle& grain : moved) {
+      const int owner = boxes.owner_of(grain.position);
+      const auto at = std::find(neighbours.begin(), neighbours.end(), owner);
+      if (at == neighbours.end()) continue;
+      Bytes& to = out[static_cast<std::size_t>(at - neighbours.begin())];
       to.resize(to.size() + kMigrantBytes);
     }
-    ranks.exchange_all(out);
+    ranks.exchange_with(neighbours, out);
+    time.exchange = now() - from;
+    from = now();
+    ranks.max(bed.skin);
+    ranks.sum(static_cast<std::int64_t>(owned));
+    halo.build(ranks, boxes, neighbours, bed.largest_radius, bed.skin, share.grains);
+    time.rebuild = now() - from;
   }
-  time.exchange = now() - from;
-  from = now();
-  // Grains stay where they are here: as many come as go.
-  ranks.max(bed.skin);
-  ranks.sum(static_cast<std::int64_t>(grains.size()));
-  halo.build(ranks, columns, bed.reach(), grains);
-  time.rebuild = now() - from;
-}
 
-double mean(const Communicator& ranks, double seconds) {
-  return 1e-12 * static_cast<double>(ranks.sum(static_cast<std::int64_t>(seconds * 1e12))) /
+  Communicator ranks;
+  ScalingBed bed;
+  Decomposition boxes;
+  std::vector<int> neighbours;
+  BedShare share;
+  std::size_t owned;
+  Halo halo;
+};
+
+double mean(const Communicator& ranks, double value) {
+  return 1e-12 * static_cast<double>(ranks.sum(static_cast<std::int64_t>(value * 1e12))) /
          ranks.size();
 }
 
-void run_steps(const Communicator& ranks, double rate, bool exchanges, int layers, int cores) {
-  ScalingBed bed;
-  const double grains_for_one = static_cast<double>(bed.count_z) / layers;
-  const double stands_for = grains_for_one / cores;
-  bed.high.z /= grains_for_one;
-  bed.count_z = layers;
-  const Decomposition columns(Vec3{}, bed.high, ranks.size(), ranks.rank(), bed.reach());
-  std::vector<Particle> grains = bed_share(bed, columns, ranks.rank());
-  const std::size_t owned = grains.size();
-  stir(0.5 * bed.skin, grains);
+void run_steps(const Communicator& ranks, const Costs& costs) {
+  Rank rank(ranks);
   ranks.barrier();
-
   Phases time;
-  Halo halo;
-  rebuild(ranks, columns, bed, exchanges, grains, halo, time);
-  const double making_lists = stands_for * kRebuildSeconds * static_cast<double>(grains.size());
-  const auto ghosts = static_cast<std::int64_t>(grains.size() - owned);
-  const double own_seconds = stands_for * step_seconds(bed, columns, owned, rate);
+  rank.rebuild(time);
+  const double count = static_cast<double>(rank.share.count);
+  const double ghosts = rank.ghosts();
+  const double twice = kPairShare * done_twice(rank.bed, rank.boxes.box(ranks.rank()));
+  const double outer = costs.overlaps ? static_cast<double>(rank.halo.sent_grains()) : count;
+  const double core = costs.step / costs.cores;
+  time.rebuild += costs.lists / costs.cores * (count + ghosts) + kHaloSeconds * ghosts;
   ranks.barrier();
   const double from = now();
   for (int s = 0; s < kSteps; ++s) {
     double at = now();
-    compute(stands_for * kPackingSeconds * static_cast<double>(ghosts));
-    halo.update(ranks, grains);
-    time.halo += (now() - at) / kSteps;
-    at = now();
-    compute(own_seconds);
-    time.compute += (now() - at) / kSteps;
-    at = now();
+    const auto spent = [&at] {
+      const double since = now() - at;
+      at = now();
+      return since / kSteps;
+    };
+    compute(kPackingSeconds * ghosts);
+    rank.halo.start(rank.share.grains);
+    time.halo += spent();
+    compute(core * (count - outer));
+    time.compute += spent();
+    rank.halo.finish();
+    time.halo += spent();
+    compute(core * (outer + twice));
+    time.compute += spent();
     Communicator::StepTotals totals;
     totals.sums.resize(5 * kBodies + 1);
     totals.maxima.resize(5);
     ranks.combine(totals);
-    time.agree += (now() - at) / kSteps;
+    time.agree += spent();
   }
   const double step = ranks.max(now() - from) / kSteps;
-  const std::int64_t all = ranks.sum(static_cast<std::int64_t>(owned));
-  const std::int64_t most = ranks.max(static_cast<std::int64_t>(owned));
-  const std::int64_t all_ghosts = ranks.sum(ghosts);
+  const double most = ranks.max(count);
+  const double all = 1.0 * static_cast<double>(ranks.sum(rank.share.count));
   const double exchange = ranks.max(time.exchange);
-  const double building = ranks.max(time.rebuild + making_lists);
-  const double halo_mean = mean(ranks, time.halo);
-  const double compute_mean = mean(ranks, time.compute);
-  const double agree_mean = mean(ranks, time.agree);
+  const double rebuild = ranks.max(time.rebuild);
+  const double ghosts_mean = mean(ranks, 1e-3 * ghosts) * 1e3;
+  const double twice_mean = mean(ranks, core * twice);
+  const double neighbours = mean(ranks, static_cast<double>(rank.neighbours.size()));
+  const double halo = mean(ranks, time.halo);
+  const double computing = mean(ranks, time.compute);
+  const double agree = mean(ranks, time.agree);
   if (ranks.rank() != 0) return;
   std::printf(
-      "{\"ranks\": %d, \"columns\": [%d, %d], \"grains\": %.0f, \"most\": %.0f, \"ghosts\": %.0f, "
-      "\"rate\": %g, \"step\": %.9f, \"compute\": %.9f, \"halo\": %.9f, \"agree\": %.9f, "
+      "{\"ranks\": %d, \"cores\": %d, \"grains\": %.0f, \"most\": %.0f, \"ghosts\": %.0f, "
+      "\"neighbours\": %.2f, \"step_cost\": %g, \"lists_cost\": %g, \"step\": %.9f, "
+      "\"compute\": %.9f, \"twice\": %.9f, \"packing\": %.9f, \"halo\": %.9f, \"agree\": %.9f, "
       "\"rebuild\": %.9f, \"exchange\": %.9f}\n",
-      ranks.size(), columns.columns_x(), columns.columns_y(),
-      grains_for_one * static_cast<double>(all), grains_for_one * static_cast<double>(most),
-      grains_for_one * static_cast<double>(all_ghosts), rate, step, compute_mean, halo_mean,
-      agree_mean, building, exchanges ? exchange : -1.0);
+      ranks.size(), costs.cores, all, most, ghosts_mean, neighbours, costs.step, costs.lists, step,
+      computing, twice_mean, kPackingSeconds * ghosts_mean, halo, agree, rebuild, exchange);
   std::fflush(stdout);
 }
 
-// Both ranks share one process and core, so the real time of an update, less than 0.1 ms of which
-// is the simulator's, is that of packing, copying and unpacking all ghosts.
+// Both ranks share one process and core, so the real time of both, less than 0.1 ms of which is the
+// simulator's, is that of packing, copying and making all ghosts.
 void measure_packing(const Communicator& ranks) {
-  ScalingBed bed;
-  bed.high = {1.2192 / 48, 0.5334 / 32, 0.2006};  // a column at 3 072 ranks, twice
-  bed.count_x = 16;
-  bed.count_y = 11;
-  const Decomposition columns(Vec3{}, bed.high, ranks.size(), ranks.rank(), bed.reach());
-  std::vector<Particle> grains = bed_share(bed, columns, ranks.rank());
-  const std::size_t owned = grains.size();
-  Halo halo;
-  halo.build(ranks, columns, bed.reach(), grains);
-  const std::int64_t ghosts = ranks.sum(static_cast<std::int64_t>(grains.size() - owned));
-  ranks.barrier();
-  constexpr int kTimes = 300;
-  const auto from = std::chrono::steady_clock::now();
-  for (int i = 0; i < kTimes; ++i) halo.update(ranks, grains);
-  ranks.barrier();
-  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - from;
+  Rank rank(ranks);
+  // Two cubes, each with as many grains as a rank of 3 072 has, side by side.
+  rank.bed.high = {0.0698, 0.0349, 0.0349};
+  rank.bed.count_x = 46;
+  rank.bed.count_y = 23;
+  rank.bed.count_z = 23;
+  rank.boxes = Decomposition::even({}, rank.bed.high, ranks.size());
+  rank.share = bed_share(rank.bed, rank.boxes, ranks.rank());
+  rank.owned = rank.share.grains.size();
+  const auto timed = [&](int times, const auto& work) {
+    ranks.barrier();
+    const auto from = std::chrono::steady_clock::now();
+    for (int i = 0; i < times; ++i) work();
+    ranks.barrier();
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - from;
+    return spent.count() / times;
+  };
+  const double making = timed(20, [&] {
+    rank.share.grains.resize(rank.owned);
+    rank.halo.build(ranks, rank.boxes, rank.neighbours, rank.bed.largest_radius, rank.bed.skin,
+                    rank.share.grains);
+  });
+  const double renewing = timed(300, [&] {
+    rank.halo.start(rank.share.grains);
+    rank.halo.finish();
+  });
+  const double ghosts = static_cast<double>(ranks.sum(static_cast<std::int64_t>(rank.ghosts())));
   if (ranks.rank() == 0)
-    std::printf("{\"ghosts\": %lld, \"seconds_per_ghost\": %.3g}\n", static_cast<long long>(ghosts),
-                spent.count() / kTimes / static_cast<double>(ghosts));
+    std::printf("{\"ghosts\": %.0f, \"making_s\": %.3g, \"renewing_s\": %.3g}\n", ghosts,
+                making / ghosts, renewing / ghosts);
   std::fflush(stdout);
 }
 
@@ -178,10 +223,10 @@ int main(int argc, char** argv) {
   if (argc == 2 && std::strcmp(argv[1], "packing") == 0) {
     grouser::bench::measure_packing(ranks);
   } else if (argc == 6 && std::strcmp(argv[1], "steps") == 0) {
-    grouser::bench::run_steps(ranks, std::atof(argv[2]), std::atoi(argv[3]) != 0,
-                              std::atoi(argv[4]), std::atoi(argv[5]));
+    grouser::bench::run_steps(ranks, {std::atof(argv[2]), std::atof(argv[3]), std::atoi(argv[4]),
+                                      std::atoi(argv[5]) != 0});
   } else {
-    std::fputs("scaling_driver: steps RATE EXCHANGE LAYERS CORES, or packing\n", stderr);
+    std::fputs("scaling_driver: steps STEP LISTS CORES OVERLAP, or packing\n", stderr);
     return 2;
   }
   return 0;

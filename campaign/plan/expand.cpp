@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "base/atomic_file.hpp"
-#include "base/columns.hpp"
 #include "base/hash.hpp"
+#include "base/list_reach.hpp"
 #include "base/units.hpp"
 
 namespace grouser {
@@ -197,16 +197,13 @@ class Planner {
     const std::int64_t ranks = file_.settings.resources.ranks;
     const double reach = list_reach(input.grains);
     const BoxCase& box = input.box;
-    if (cut_columns(box.length, box.width, ranks, reach)) return;
-    const auto columns = [reach](double room) {
-      return std::max<std::int64_t>(1, static_cast<std::int64_t>(room / reach));
-    };
-    std::int64_t most = std::min(ranks - 1, columns(box.length) * columns(box.width));
-    while (!cut_columns(box.length, box.width, most, reach)) --most;
+    const std::int64_t most = most_ranks(box.length, box.width, input.bed.depth, reach);
+    if (ranks <= most) return;
     problems_.add(node_or(node_or(file_.root, "resources"), "ranks"), "resources.ranks",
-                  std::to_string(ranks) + " ranks cut the box into columns narrower than the " +
+                  std::to_string(ranks) +
+                      " ranks leave a rank less of the bed than a cube of the " +
                       rounded(1e3 * reach) + " mm that a contact reaches",
-                  "the next lower number that fits is " + std::to_string(most));
+                  "use at most " + std::to_string(most));
   }
 
   void finish(PlannedRun& run, const std::vector<std::size_t>& choice) {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "base/columns.hpp"
+#include "base/list_reach.hpp"
 #include "base/size_curve.hpp"
 #include "base/time_step.hpp"
 #include "engine/terrain/bed.hpp"
@@ -42,6 +42,7 @@ World make_world(const Communicator& ranks, const Case& input) {
   WorldSettings settings;
   settings.low = {0.0, 0.0, 0.0};
   settings.high = {input.box.length, input.box.width, walls + kHeadroom};
+  settings.top = input.has_wheel ? input.bed.depth : walls;
   settings.gravity = input.gravity;
   settings.time_step = time_step_of(input);
   settings.largest_radius = 0.5 * sizes.largest();

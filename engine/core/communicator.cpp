@@ -167,16 +167,64 @@ std::vector<Bytes> Communicator::exchange_all(const std::vector<Bytes>& out) con
   return in;
 }
 
-void Communicator::shift(int to, const void* out, std::size_t out_bytes, int from, void* in,
-                         std::size_t in_bytes) const {
-  constexpr int kTag = 1;
-  MPI_Sendrecv(out, as_count(out_bytes), MPI_BYTE, to < 0 ? MPI_PROC_NULL : to, kTag, in,
-               as_count(in_bytes), MPI_BYTE, from < 0 ? MPI_PROC_NULL : from, kTag,
-               comm_of(handle_), MPI_STATUS_IGNORE);
+std::vector<Bytes> Communicator::exchange_with(const std::vector<int>& others,
+                                               const std::vector<Bytes>& out) const {
+  GROUSER_CHECK(out.size() == others.size());
+  std::vector<std::size_t> out_bytes, in_bytes(others.size());
+  Messages messages(*this);
+  for (const Bytes& part : out) out_bytes.push_back(part.size());
+  for (std::size_t k = 0; k < others.size(); ++k)
+    messages.receive(others[k], &in_bytes[k], sizeof in_bytes[k]);
+  for (std::size_t k = 0; k < others.size(); ++k)
+    messages.send(others[k], &out_bytes[k], sizeof out_bytes[k]);
+  messages.finish();
+  std::vector<Bytes> in(others.size());
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    in[k].resize(in_bytes[k]);
+    messages.receive(others[k], in[k].data(), in[k].size());
+  }
+  for (std::size_t k = 0; k < others.size(); ++k)
+    messages.send(others[k], out[k].data(), out[k].size());
+  messages.finish();
+  return in;
 }
 
 void Communicator::barrier() const {
   if (size_ > 1) MPI_Barrier(comm_of(handle_));
+}
+
+struct Messages::Requests {
+  MPI_Comm ranks;
+  std::vector<MPI_Request> all;
+};
+
+namespace {
+
+constexpr int kTag = 1;
+
+}  // namespace
+
+Messages::Messages(const Communicator& ranks)
+    : requests_(std::make_unique<Requests>(Requests{comm_of(ranks.fortran_handle()), {}})) {}
+Messages::Messages(Messages&&) noexcept = default;
+Messages& Messages::operator=(Messages&&) noexcept = default;
+Messages::~Messages() = default;
+
+void Messages::receive(int from, void* in, std::size_t bytes) {
+  if (bytes == 0) return;
+  MPI_Irecv(in, as_count(words_in(bytes)), MPI_INT64_T, from, kTag, requests_->ranks,
+            &requests_->all.emplace_back());
+}
+
+void Messages::send(int to, const void* out, std::size_t bytes) {
+  if (bytes == 0) return;
+  MPI_Isend(out, as_count(words_in(bytes)), MPI_INT64_T, to, kTag, requests_->ranks,
+            &requests_->all.emplace_back());
+}
+
+void Messages::finish() {
+  MPI_Waitall(static_cast<int>(requests_->all.size()), requests_->all.data(), MPI_STATUSES_IGNORE);
+  requests_->all.clear();
 }
 
 ParallelSession::ParallelSession(int* argc, char*** argv) { MPI_Init(argc, argv); }

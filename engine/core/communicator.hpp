@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -46,10 +47,10 @@ class Communicator {
   /// sender. Collective.
   std::vector<Bytes> exchange_all(const std::vector<Bytes>& out) const;
 
-  /// Sends `out` to rank `to` and receives `in` from rank `from`, whose size both sides know; a
-  /// negative rank means nobody. Must be matched by those ranks.
-  void shift(int to, const void* out, std::size_t out_bytes, int from, void* in,
-             std::size_t in_bytes) const;
+  /// The same among `others`, who all name this rank too: `out[k]` goes to others[k]; returns what
+  /// came from each. Only those ranks need to call.
+  std::vector<Bytes> exchange_with(const std::vector<int>& others,
+                                   const std::vector<Bytes>& out) const;
 
   void barrier() const;  ///< Collective.
 
@@ -62,6 +63,27 @@ class Communicator {
   int rank_ = 0;
   int size_ = 1;
   int handle_ = 0;
+};
+
+/// Messages between this rank and others that travel while the rank works. All are a multiple of
+/// eight bytes long, and both sides know how long.
+class Messages {
+ public:
+  explicit Messages(const Communicator& ranks);
+  Messages(Messages&&) noexcept;
+  Messages& operator=(Messages&&) noexcept;
+  ~Messages();
+
+  /// Begins to fill `in`, which must stay where it is and untouched until finish(). Local.
+  void receive(int from, void* in, std::size_t bytes);
+  /// Begins to send `out`, likewise. Messages between the same two ranks keep their order. Local.
+  void send(int to, const void* out, std::size_t bytes);
+  /// Waits until all have arrived and left.
+  void finish();
+
+ private:
+  struct Requests;
+  std::unique_ptr<Requests> requests_;
 };
 
 /// MPI_Init and MPI_Finalize around a program's life.

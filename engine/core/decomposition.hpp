@@ -1,43 +1,61 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/communicator.hpp"
+#include <vector>
+
 #include "engine/core/vec3.hpp"
 
 namespace grouser {
 
-/// Which rank owns which part of the domain: a regular grid of columns over x and y. The bed is
-/// shallow, so z is not divided.
+/// The part of space that one rank owns: low <= x < high along each axis [m]. Faces at the edge of
+/// the domain are at infinity.
+struct Box {
+  Vec3 low;
+  Vec3 high;
+
+  /// Squared distance to a point or another box, 0 inside [m2]. Local.
+  double distance2(const Vec3& at) const;
+  double distance2(const Box& other) const;
+  /// How far a point inside is from the nearest face [m]. Local.
+  double depth(const Vec3& at) const;
+};
+
+/// Which rank owns which part of space: boxes that cuts across an axis leave, one cut within
+/// another. Every rank knows all of them, so all agree on the owner of any point.
 class Decomposition {
  public:
-  /// @param low,high corners of the domain [m]; particles beyond belong to the nearest column
-  /// @param reach    width of the halo [m]; columns must be at least as wide
-  /// @throws ConfigError when `size` ranks would make columns narrower than `reach`. Local.
-  Decomposition(const Vec3& low, const Vec3& high, int size, int rank, double reach);
+  /// @param boxes one to each rank; they fill space and can be parted by a plane again and again
+  explicit Decomposition(std::vector<Box> boxes);
 
-  int owner_of(const Vec3& position) const;  ///< Local.
+  /// Boxes of about the same volume within [low, high], as near to cubes as halving across the
+  /// longest side makes them. Ranks that follow one another are close together. Local.
+  static Decomposition even(const Vec3& low, const Vec3& high, int count);
 
-  int columns_x() const { return columns_x_; }
-  int columns_y() const { return columns_y_; }
-  /// Rank of the neighbouring column, or -1 at the edge of the domain.
-  int neighbour(int step_x, int step_y) const;
-  /// Edges of this rank's column [m].
-  double low_x() const { return edge(low_.x, high_.x, columns_x_, at_x_); }
-  double high_x() const { return edge(low_.x, high_.x, columns_x_, at_x_ + 1); }
-  double low_y() const { return edge(low_.y, high_.y, columns_y_, at_y_); }
-  double high_y() const { return edge(low_.y, high_.y, columns_y_, at_y_ + 1); }
+  /// Every point has exactly one: on a cut it is the rank above, beyond the domain the nearest one.
+  /// Local.
+  int owner_of(const Vec3& position) const;
+
+  int size() const { return static_cast<int>(boxes_.size()); }
+  const Box& box(int rank) const { return boxes_[static_cast<std::size_t>(rank)]; }
+
+  /// Other ranks whose boxes are within `reach` [m] of this rank's, by number; however narrow boxes
+  /// are. If a has b, b has a. Local.
+  std::vector<int> neighbours(int rank, double reach) const;
 
  private:
-  static double edge(double low, double high, int count, int index) {
-    return low + (high - low) * index / count;
-  }
+  // A cut across axis `axis` at `at`. Sides are places of further cuts, or -1 - rank.
+  struct Cut {
+    int axis;
+    double at;
+    int below;
+    int above;
+  };
 
-  Vec3 low_;
-  Vec3 high_;
-  int columns_x_ = 1;
-  int columns_y_ = 1;
-  int at_x_ = 0;
-  int at_y_ = 0;
+  int part(std::vector<int> ranks);
+
+  std::vector<Box> boxes_;
+  std::vector<Cut> cuts_;
+  int first_ = -1;
 };
 
 }  // namespace grouser

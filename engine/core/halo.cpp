@@ -1,64 +1,122 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/core/halo.hpp"
 
+#include <algorithm>
+
+#include "engine/core/cell_grid.hpp"
+
 namespace grouser {
 namespace {
 
-constexpr std::size_t kVectors = 3;  // position, velocity, spin
+// Marks the grains on either side of a border that are near one of the other side. Both sides do
+// so with the same numbers, and so agree.
+class NearPairs {
+ public:
+  NearPairs(const std::vector<Particle>& particles, const std::vector<std::uint32_t>& own,
+            const std::vector<Particle>& other, double skin)
+      : is_own_near(own.size(), 0), is_other_near(other.size(), 0) {
+    if (own.empty() || other.empty()) return;
+    Vec3 low = other[0].position;
+    Vec3 high = low;
+    double radius = 0.0;
+    for (const Particle& p : other) {
+      low = {std::min(low.x, p.position.x), std::min(low.y, p.position.y),
+             std::min(low.z, p.position.z)};
+      high = {std::max(high.x, p.position.x), std::max(high.y, p.position.y),
+              std::max(high.z, p.position.z)};
+      radius = std::max(radius, p.radius);
+    }
+    for (const std::uint32_t i : own) radius = std::max(radius, particles[i].radius);
+    const CellGrid grid(low, high, 2.0 * radius + skin, 2 * other.size() + 64);
+    std::vector<std::uint32_t> first(grid.cells() + 2, 0);
+    std::vector<std::uint32_t> members(other.size());
+    const auto cell_of = [&](const Particle& p) { return grid.index(grid.cell_of(p.position)); };
+    for (const Particle& p : other) ++first[cell_of(p) + 2];
+    for (std::size_t c = 2; c < first.size(); ++c) first[c] += first[c - 1];
+    for (std::uint32_t j = 0; j < other.size(); ++j) members[first[cell_of(other[j]) + 1]++] = j;
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      const Particle& grain = particles[own[i]];
+      const std::array<int, 3> at = grid.cell_of(grain.position);
+      const auto begin = [&](std::size_t d) { return std::max(at[d] - 1, 0); };
+      const auto end = [&](std::size_t d) { return std::min(at[d] + 1, grid.count(d) - 1); };
+      for (int x = begin(0); x <= end(0); ++x)
+        for (int y = begin(1); y <= end(1); ++y)
+          for (std::uint32_t m = first[grid.index({x, y, begin(2)})];
+               m < first[grid.index({x, y, end(2)}) + 1]; ++m) {
+            const std::uint32_t j = members[m];
+            if ((is_own_near[i] & is_other_near[j]) != 0 || !is_within(grain, other[j], skin))
+              continue;
+            is_own_near[i] = is_other_near[j] = 1;
+          }
+    }
+  }
+
+  std::vector<std::uint8_t> is_own_near;
+  std::vector<std::uint8_t> is_other_near;
+};
 
 }  // namespace
 
-void Halo::build(const Communicator& ranks, const Decomposition& columns, double reach,
+void Halo::build(const Communicator& ranks, const Decomposition& boxes,
+                 const std::vector<int>& neighbours, double largest_radius, double skin,
                  std::vector<Particle>& particles) {
-  for (std::size_t l = 0; l < legs_.size(); ++l) {
-    const bool along_x = l < 2;
-    const int step = l % 2 == 0 ? -1 : 1;
-    Leg& leg = legs_[l];
-    leg.to = along_x ? columns.neighbour(step, 0) : columns.neighbour(0, step);
-    leg.from = along_x ? columns.neighbour(-step, 0) : columns.neighbour(0, -step);
-    leg.sent.clear();
-    // The second leg of a direction must not send back what the first brought.
-    const std::size_t candidates = l % 2 == 0 ? particles.size() : legs_[l - 1].first_ghost;
-    if (leg.to >= 0) {
-      const double edge = along_x ? (step < 0 ? columns.low_x() : columns.high_x())
-                                  : (step < 0 ? columns.low_y() : columns.high_y());
-      for (std::size_t i = 0; i < candidates; ++i) {
-        const double at = along_x ? particles[i].position.x : particles[i].position.y;
-        if (step < 0 ? at < edge + reach : at > edge - reach)
-          leg.sent.push_back(static_cast<std::uint32_t>(i));
-      }
+  owned_ = particles.size();
+  neighbours_.clear();
+  // A hair more, so that rounding at a box's face loses no pair.
+  const auto reach = [&](const Particle& p) {
+    return (p.radius + largest_radius + skin) * (1.0 + 1e-9);
+  };
+  std::vector<std::uint32_t> outer;
+  const Box& own = boxes.box(ranks.rank());
+  for (std::uint32_t i = 0; i < owned_; ++i)
+    if (own.depth(particles[i].position) < reach(particles[i])) outer.push_back(i);
+  std::vector<Bytes> out;
+  for (const int rank : neighbours) {
+    Neighbour& neighbour = neighbours_.emplace_back(Neighbour{rank, {}, 0});
+    Bytes& records = out.emplace_back();
+    const Box& box = boxes.box(rank);
+    for (const std::uint32_t i : outer) {
+      const double far = reach(particles[i]);
+      if (box.distance2(particles[i].position) >= far * far) continue;
+      neighbour.sent.push_back(i);
+      append_bytes(records, &particles[i], 1);
     }
-    const std::int64_t sending = static_cast<std::int64_t>(leg.sent.size());
-    std::int64_t coming = 0;
-    ranks.shift(leg.to, &sending, sizeof sending, leg.from, &coming, sizeof coming);
-    leg.first_ghost = particles.size();
-    leg.ghosts = static_cast<std::size_t>(coming);
-    std::vector<Particle> out;
-    out.reserve(leg.sent.size());
-    for (const std::uint32_t i : leg.sent) out.push_back(particles[i]);
-    particles.resize(leg.first_ghost + leg.ghosts);
-    ranks.shift(leg.to, out.data(), out.size() * sizeof(Particle), leg.from,
-                particles.data() + leg.first_ghost, leg.ghosts * sizeof(Particle));
   }
+  const std::vector<Bytes> in = ranks.exchange_with(neighbours, out);
+  std::size_t sent = 0;
+  std::vector<bool> is_sent(owned_, false);
+  for (std::size_t n = 0; n < neighbours_.size(); ++n) {
+    Neighbour& neighbour = neighbours_[n];
+    std::vector<Particle> theirs(in[n].size() / sizeof(Particle));
+    ByteReader(in[n]).take(theirs.data(), theirs.size());
+    const NearPairs near(particles, neighbour.sent, theirs, skin);
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < neighbour.sent.size(); ++k)
+      if (near.is_own_near[k] != 0) neighbour.sent[kept++] = neighbour.sent[k];
+    neighbour.sent.resize(kept);
+    for (const std::uint32_t i : neighbour.sent) is_sent[i] = true;
+    neighbour.sent.shrink_to_fit();
+    sent += kept;
+    const std::size_t before = particles.size();
+    for (std::size_t k = 0; k < theirs.size(); ++k)
+      if (near.is_other_near[k] != 0) particles.push_back(theirs[k]);
+    neighbour.ghosts = particles.size() - before;
+  }
+  out_.resize(sent);
+  sent_grains_ = static_cast<std::size_t>(std::count(is_sent.begin(), is_sent.end(), true));
 }
 
-void Halo::update(const Communicator& ranks, std::vector<Particle>& particles) {
-  for (const Leg& leg : legs_) {
-    if (leg.to < 0 && leg.from < 0) continue;
-    out_.clear();
-    for (const std::uint32_t i : leg.sent) {
-      const Particle& p = particles[i];
-      out_.insert(out_.end(), {p.position, p.velocity, p.spin});
-    }
-    in_.resize(leg.ghosts * kVectors);
-    ranks.shift(leg.to, out_.data(), out_.size() * sizeof(Vec3), leg.from, in_.data(),
-                in_.size() * sizeof(Vec3));
-    for (std::size_t g = 0; g < leg.ghosts; ++g) {
-      Particle& p = particles[leg.first_ghost + g];
-      p.position = in_[g * kVectors];
-      p.velocity = in_[g * kVectors + 1];
-      p.spin = in_[g * kVectors + 2];
-    }
+void Halo::start(std::vector<Particle>& particles) {
+  Particle* to = particles.data() + owned_;
+  for (const Neighbour& neighbour : neighbours_) {
+    messages_.receive(neighbour.rank, to, neighbour.ghosts * sizeof(Particle));
+    to += neighbour.ghosts;
+  }
+  Particle* from = out_.data();
+  for (const Neighbour& neighbour : neighbours_) {
+    const Particle* const begin = from;
+    for (const std::uint32_t i : neighbour.sent) *from++ = particles[i];
+    messages_.send(neighbour.rank, begin, neighbour.sent.size() * sizeof(Particle));
   }
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -11,30 +10,40 @@
 
 namespace grouser {
 
-/// Copies ("ghosts") of the neighbours' particles near this rank's column. Two sweeps, x then y,
-/// so that corners arrive through the neighbour between.
+/// Copies ("ghosts") of other ranks' grains that this rank's grains may touch. Each comes straight
+/// from its owner, as a whole record.
 class Halo {
  public:
-  /// Appends ghosts to `particles`, which must hold owned particles only, and remembers who goes
-  /// where. @param reach width of the halo [m]. Collective.
-  void build(const Communicator& ranks, const Decomposition& columns, double reach,
+  explicit Halo(const Communicator& ranks) : messages_(ranks) {}
+
+  /// Appends ghosts to `particles`, which must hold owned grains only, and remembers who goes
+  /// where: all that are within the sum of radii + `skin` [m] of one of this rank's grains.
+  /// @param neighbours ranks with grains that near, and perhaps more; see Decomposition
+  /// Collective.
+  void build(const Communicator& ranks, const Decomposition& boxes,
+             const std::vector<int>& neighbours, double largest_radius, double skin,
              std::vector<Particle>& particles);
 
-  /// Renews positions, velocities and spins of the ghosts. Collective.
-  void update(const Communicator& ranks, std::vector<Particle>& particles);
+  /// Begins to renew the ghosts. Until finish() nobody may look at them, nor may `particles` move
+  /// in memory; owned grains may be looked at and moved on. Collective.
+  void start(std::vector<Particle>& particles);
+  void finish() { messages_.finish(); }
+
+  /// Owned grains that other ranks have ghosts of. Local.
+  std::size_t sent_grains() const { return sent_grains_; }
 
  private:
-  struct Leg {
-    int to = -1;
-    int from = -1;
+  struct Neighbour {
+    int rank;
     std::vector<std::uint32_t> sent;
-    std::size_t first_ghost = 0;
-    std::size_t ghosts = 0;
+    std::size_t ghosts;
   };
 
-  std::array<Leg, 4> legs_;
-  std::vector<Vec3> out_;
-  std::vector<Vec3> in_;
+  Messages messages_;
+  std::vector<Neighbour> neighbours_;
+  std::size_t owned_ = 0;
+  std::size_t sent_grains_ = 0;
+  std::vector<Particle> out_;
 };
 
 }  // namespace grouser

@@ -19,4 +19,10 @@ struct alignas(32) Particle {
 };
 static_assert(sizeof(Particle) == 96);
 
+/// Whether two grains are closer than the sum of their radii + `gap` [m].
+inline bool is_within(const Particle& a, const Particle& b, double gap) {
+  const double reach = a.radius + b.radius + gap;
+  return norm2(a.position - b.position) < reach * reach;
+}
+
 }  // namespace grouser

@@ -29,8 +29,8 @@ class HistoryModes {
   /// The kernel at time t [s] as these weights give it [s^(-1/2)]. Local.
   double kernel(const Weights& weights, double time) const;
 
-  /// Integral of kernel(t - s) a(s) ds over all steps before this one, t in its middle [m s^(-3/2)].
-  /// The half step up to t adds `local_weight()` times its own acceleration. Local.
+  /// Integral of kernel(t - s) a(s) ds over all steps before this one, t in its middle [m
+  /// s^(-3/2)]. The half step up to t adds `local_weight()` times its own acceleration. Local.
   Vec3 past(const Weights& weights, const Memory& memory) const;
   double local_weight() const { return local_; }  ///< [s^(1/2)]
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/core/cell_grid.hpp"
 #include "engine/core/vec3.hpp"
-#include "engine/dem/cell_grid.hpp"
 
 namespace grouser {
 

@@ -69,6 +69,11 @@ class PairContacts {
   /// Whether a grain was much faster than the mean when the slots were made.
   bool is_fast(std::size_t grain) const { return is_fast_[grain] != 0; }
 
+  /// Pairs of an owned grain that are looked at in a step.
+  std::size_t slots_of(std::size_t grain) const {
+    return side_start_[grain + 1] - side_start_[grain];
+  }
+
   /// Tells how fast grains were in the last step, on all ranks [m s-1]: the fastest of those that
   /// are not is_fast, and the mean over all grains of |vx| + |vy| + |vz|.
   void note_speeds(double slow, double mean, double time_step);

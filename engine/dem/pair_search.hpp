@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/core/cell_grid.hpp"
 #include "engine/core/particle.hpp"
-#include "engine/dem/cell_grid.hpp"
 
 namespace grouser {
 
@@ -27,11 +27,5 @@ class PairSearch {
   std::vector<std::uint32_t> first_;  // of each cell's members
   std::vector<std::uint32_t> members_;
 };
-
-/// Whether two grains are closer than the sum of their radii + `gap` [m].
-inline bool is_within(const Particle& a, const Particle& b, double gap) {
-  const double reach = a.radius + b.radius + gap;
-  return norm2(a.position - b.position) < reach * reach;
-}
 
 }  // namespace grouser

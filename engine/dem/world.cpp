@@ -6,22 +6,42 @@
 #include <limits>
 
 #include "base/check.hpp"
+#include "base/errors.hpp"
+#include "base/list_reach.hpp"
+#include "engine/core/thread_clock.hpp"
 
 namespace grouser {
 namespace {
 
 constexpr double kSphereInertia = 0.4;  // of a homogeneous sphere, over m r^2
 
+Decomposition first_cuts(const Communicator& ranks, const WorldSettings& settings) {
+  const Vec3 low = settings.low;
+  const Vec3 high{settings.high.x, settings.high.y,
+                  settings.top > 0.0 ? settings.top : settings.high.z};
+  const double reach = 2.0 * settings.largest_radius + settings.skin;
+  const std::int64_t most = most_ranks(high.x - low.x, high.y - low.y, high.z - low.z, reach);
+  if (ranks.size() > most)
+    throw ConfigError({Problem{"", 0, 0, "ranks",
+                               std::to_string(ranks.size()) +
+                                   " ranks leave a rank less of the bed than a cube of the reach "
+                                   "of a contact (" +
+                                   std::to_string(reach) + " m)",
+                               "use at most " + std::to_string(most)}});
+  return Decomposition::even(low, high, ranks.size());
+}
+
 }  // namespace
 
 World::World(const Communicator& ranks, const WorldSettings& settings)
     : ranks_(ranks),
       settings_(settings),
-      columns_(settings.low, settings.high, ranks.size(), ranks.rank(),
-               2.0 * settings.largest_radius + settings.skin),
+      boxes_(first_cuts(ranks, settings)),
+      halo_(ranks),
       pairs_(make_contact_law(settings.law, settings.grain, settings.grain, settings.grain_grain),
              make_rolling_law(settings.rolling, settings.grain_grain)) {
   GROUSER_CHECK(settings.time_step > 0.0 && settings.largest_radius > 0.0 && settings.skin > 0.0);
+  neighbours_ = boxes_.neighbours(ranks.rank(), 2.0 * settings.largest_radius + settings.skin);
   rounding_ = (norm(settings.low) + norm(settings.high)) * std::numeric_limits<float>::epsilon();
 }
 
@@ -59,9 +79,7 @@ void World::reset_origins() {
   for (std::size_t i = 0; i < owned_; ++i) origins_[i] = particles_[i].position;
 }
 
-bool World::owns(const Vec3& position) const {
-  return columns_.owner_of(position) == ranks_.rank();
-}
+bool World::owns(const Vec3& position) const { return boxes_.owner_of(position) == ranks_.rank(); }
 
 void World::reserve(std::size_t count) {
   // Some more, for ghosts.
@@ -73,8 +91,10 @@ World::StepResult World::step(double request) {
   if (must_rebuild_) {
     rebuild();
   } else {
-    halo_.update(ranks_, particles_);
+    halo_.start(particles_);
+    halo_.finish();
   }
+  const double begun = thread_seconds();
   // Bodies have moved since the last step at the velocity they have now.
   double body_speed = 0.0;
   for (const Body& body : bodies_) body_speed = std::max(body_speed, norm(body.motion.velocity));
@@ -105,6 +125,8 @@ World::StepResult World::step(double request) {
   totals.sums.emplace_back().add(std::isfinite(motion.sum) ? motion.sum : 0.0);
   totals.maxima = {std::sqrt(motion.fastest2), std::sqrt(motion.slow2), overlap,
                    motion.is_lost ? 1.0 : 0.0, request};
+  busy_ += thread_seconds() - begun;
+  ++busy_steps_;
   ranks_.combine(totals);
   for (std::size_t b = 0; b < bodies_.size(); ++b)
     loads_[b] = {totals.sums[5 * b], totals.sums[5 * b + 1], totals.sums[5 * b + 2],

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,10 @@ struct WorldSettings {
   double time_step = 0.0;       ///< [s]
   double largest_radius = 0.0;  ///< [m]
   double skin = 0.0;            ///< margin of the neighbour list [m]; costs time, not accuracy
+  /// Where grains end above at first [m]: for the first cuts between ranks; 0 = high.z
+  double top = 0.0;
+  /// Space is cut anew when the slowest rank takes this many times the mean; infinite = never
+  double uneven = 1.05;
   std::string law = "hertz_mindlin";
   std::string rolling = "none";
   Solid grain;
@@ -40,6 +45,7 @@ enum class Fault { kNone = 0, kLostParticle = 1, kNotANumber = 2 };
 /// on any number of ranks, for any skin and across save_state / load_state at any step.
 class World : public Stateful {
  public:
+  /// @throws ConfigError when there are more ranks than most_ranks(). Local.
   World(const Communicator& ranks, const WorldSettings& settings);
 
   /// Adds a grain on this rank; it moves to its owner at the next step. Ids must be 0 ... N-1 over
@@ -70,6 +76,13 @@ class World : public Stateful {
   /// Forces at the present positions, then grains move on by one time step; bodies stay for the
   /// caller to move. `request` lets ranks agree on something in the same message. Collective.
   StepResult step(double request = 0.0);
+
+  /// Cuts space anew between ranks so that each gets as much of `weights`, one for each owned
+  /// grain; grains move to their new owners at the next step. No bit of the trajectory changes.
+  /// Done by itself, by the time that grains take, when ranks are uneven. Collective.
+  void cut_by(const std::vector<double>& weights);
+  /// How often it was done by itself. Local.
+  int cuts() const { return cuts_; }
 
   /// Force and moment of all grains on a body in the last step. Local.
   const BodyLoad& load(std::size_t body) const { return loads_[body]; }
@@ -120,7 +133,10 @@ class World : public Stateful {
   };
 
   void rebuild();
+  void cut_if_uneven();
+  std::vector<double> costs() const;
   std::vector<Bytes> exchange_leaving(std::vector<bool>& leaves) const;
+  std::vector<Bytes> deliver(std::map<int, Bytes> out) const;
   std::vector<Arrival> arrivals_in(const std::vector<Bytes>& messages) const;
   void keep_histories(std::uint32_t grain, ByteReader reader);
   std::vector<std::uint32_t> numbers_by_cell(const std::vector<bool>& leaves,
@@ -137,7 +153,8 @@ class World : public Stateful {
 
   Communicator ranks_;
   WorldSettings settings_;
-  Decomposition columns_;
+  Decomposition boxes_;
+  std::vector<int> neighbours_;
   Halo halo_;
   std::vector<Particle> particles_;  // owned, then ghosts
   std::vector<Vec3> origins_;
@@ -148,8 +165,13 @@ class World : public Stateful {
   std::vector<BodyLoad> loads_;
   std::int64_t count_ = 0;       // of grains on all ranks
   std::vector<Place> built_at_;  // where grains were when the list was made
-  double rounding_ = 0.0;        // bound of what a Place leaves out [m]
-  std::string load_failure_;     // what is wrong with rows that came to this rank
+  bool may_be_far_ = true;       // from their owners, which need not be neighbours
+  bool is_loaded_ = false;       // from a state that was spread by id
+  double busy_ = 0.0;            // processor time in contacts and motion since the last look [s]
+  int busy_steps_ = 0;
+  int cuts_ = 0;
+  double rounding_ = 0.0;     // bound of what a Place leaves out [m]
+  std::string load_failure_;  // what is wrong with rows that came to this rank
   bool must_rebuild_ = true;
   double moved_ = 0.0;       // bound of grain displacement since then [m]
   double near_moved_ = 0.0;  // bound of grain against body displacement since find_near [m]

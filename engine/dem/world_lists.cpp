@@ -2,7 +2,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine/dem/cell_grid.hpp"
+#include "base/check.hpp"
+#include "engine/core/cell_grid.hpp"
 #include "engine/dem/world.hpp"
 
 namespace grouser {
@@ -13,6 +14,7 @@ constexpr std::uint32_t kGone = PairContacts::kGone;
 }  // namespace
 
 void World::rebuild() {
+  cut_if_uneven();
   std::vector<bool> leaves(owned_, false);
   std::vector<Bytes> messages;
   if (ranks_.size() > 1) messages = exchange_leaving(leaves);
@@ -38,30 +40,29 @@ void World::rebuild() {
     built_at_.push_back(
         {static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z)});
   }
-  // A hair more than the list's reach, so that rounding at a column's edge loses no pair.
-  halo_.build(ranks_, columns_, (2.0 * settings_.largest_radius + settings_.skin) * (1.0 + 1e-9),
-              particles_);
+  halo_.build(ranks_, boxes_, neighbours_, settings_.largest_radius, settings_.skin, particles_);
   pairs_.build(particles_, owned_, settings_.skin);
   for (std::size_t b = 0; b < bodies_.size(); ++b)
     body_contacts_[b].build(particles_, owned_, bodies_[b], settings_.skin);
   must_rebuild_ = false;
+  may_be_far_ = false;
   moved_ = 0.0;
   near_moved_ = 0.0;
 }
 
-// Sends grains that have left this rank's column to their owners, with copies of their histories.
+// Sends grains that have left this rank's box to their owners, with copies of their histories.
 std::vector<Bytes> World::exchange_leaving(std::vector<bool>& leaves) const {
   for (std::size_t i = 0; i < owned_; ++i)
-    leaves[i] = columns_.owner_of(particles_[i].position) != ranks_.rank();
+    leaves[i] = boxes_.owner_of(particles_[i].position) != ranks_.rank();
   PairHistories pairs(pairs_.history_width());
   pairs_.histories_of(particles_, leaves, pairs);
   pairs.sort();
 
-  std::vector<Bytes> out(static_cast<std::size_t>(ranks_.size()));
+  std::map<int, Bytes> out;
   std::vector<std::size_t> next(body_contacts_.size(), 0);
   for (std::uint32_t i = 0; i < owned_; ++i) {
     if (!leaves[i]) continue;
-    Bytes& to = out[static_cast<std::size_t>(columns_.owner_of(particles_[i].position))];
+    Bytes& to = out[boxes_.owner_of(particles_[i].position)];
     append_bytes(to, &particles_[i], 1);
     append_bytes(to, &origins_[i], 1);
     std::int64_t count = 0;
@@ -87,7 +88,26 @@ std::vector<Bytes> World::exchange_leaving(std::vector<bool>& leaves) const {
     }
   }
 
-  return ranks_.exchange_all(out);
+  return deliver(std::move(out));
+}
+
+// Grains that were with their owners at the last rebuild have come no farther than a neighbour.
+std::vector<Bytes> World::deliver(std::map<int, Bytes> out) const {
+  const double reach = 2.0 * settings_.largest_radius + settings_.skin;
+  const bool goes_far = may_be_far_ || !(moved_ < reach);
+  std::vector<Bytes> parcels;
+  const auto add = [&](int rank) {
+    const auto parcel = out.find(rank);
+    parcels.push_back(parcel == out.end() ? Bytes{} : std::move(parcel->second));
+    if (parcel != out.end()) out.erase(parcel);
+  };
+  if (goes_far) {
+    for (int rank = 0; rank < ranks_.size(); ++rank) add(rank);
+    return ranks_.exchange_all(parcels);
+  }
+  for (const int rank : neighbours_) add(rank);
+  GROUSER_CHECK(out.empty());
+  return ranks_.exchange_with(neighbours_, parcels);
 }
 
 std::vector<World::Arrival> World::arrivals_in(const std::vector<Bytes>& messages) const {

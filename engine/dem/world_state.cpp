@@ -113,6 +113,8 @@ void World::begin_load() {
   for (BodyContacts& on_body : body_contacts_) on_body.forget();
   load_failure_.clear();
   must_rebuild_ = true;
+  may_be_far_ = true;
+  is_loaded_ = true;
 }
 
 void World::load_rows(const StateTable& rows) {

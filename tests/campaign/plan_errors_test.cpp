@@ -97,19 +97,17 @@ TEST(CampaignErrors, RulesBetweenValuesAreCheckedForEveryRun) {
   expect_parts(text, {"case.wheel: runs into the end wall"});
 }
 
-// 40 x 12 cm and grains of 9.6 mm that reach 10.3 mm: 38 x 11 columns at most.
-TEST(CampaignErrors, RanksWithColumnsNarrowerThanAContactReachesAreRefusedWithWhatFits) {
+// 40 x 12 x 6 cm of soil and grains of 9.6 mm that reach 10.3 mm: 38 x 11 x 5 cubes.
+TEST(CampaignErrors, MoreRanksThanCubesOfAContactsReachAreRefusedWithWhatFits) {
   const auto with_ranks = [](const std::string& ranks) {
     return problems_of(small_campaign("", "campaign: small\nscheduler: slurm\nresources: {ranks: " +
                                               ranks + ", walltime: 1h}\n"));
   };
-  EXPECT_EQ(with_ranks("418"), "");
-  expect_parts(
-      with_ranks("419"),
-      {"c.yaml:4:20: resources.ranks: 419 ranks cut the box into columns narrower than the "
-       "10.3 mm that a contact reaches; the next lower number that fits is 418"});
-  // A prime number leaves one row, which is too long for it.
-  expect_parts(with_ranks("41"), {"the next lower number that fits is 40"});
+  EXPECT_EQ(with_ranks("2090"), "");
+  EXPECT_EQ(with_ranks("41"), "");
+  expect_parts(with_ranks("2091"),
+               {"c.yaml:4:20: resources.ranks: 2091 ranks leave a rank less of the bed than a cube "
+                "of the 10.3 mm that a contact reaches; use at most 2090"});
 }
 
 TEST(CampaignErrors, TwoPointsWithTheSameCaseAreRefused) {

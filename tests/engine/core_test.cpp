@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
-#include "base/errors.hpp"
 #include "engine/core/communicator.hpp"
 #include "engine/core/decomposition.hpp"
 #include "engine/core/exact_sum.hpp"
@@ -38,26 +38,58 @@ TEST(ExactSum, SurvivesItsLimbs) {
   }
 }
 
-TEST(Decomposition, EveryPointHasExactlyTheOwnerWhoseColumnHoldsIt) {
-  const Vec3 low{0.0, 0.0, 0.0};
-  const Vec3 high{1.2, 0.5, 0.3};
-  for (const int size : {1, 2, 3, 4, 6}) {
-    std::mt19937_64 random(3);
-    std::uniform_real_distribution<double> unit(0.0, 1.0);
-    for (int i = 0; i < 200; ++i) {
-      const Vec3 at{1.2 * unit(random), 0.5 * unit(random), 0.1};
-      const Decomposition first(low, high, size, 0, 0.01);
-      const Decomposition own(low, high, size, first.owner_of(at), 0.01);
-      EXPECT_GE(at.x, own.low_x() - 1e-12);
-      EXPECT_LE(at.x, own.high_x() + 1e-12);
-      EXPECT_GE(at.y, own.low_y() - 1e-12);
-      EXPECT_LE(at.y, own.high_y() + 1e-12);
+TEST(Decomposition, EveryPointIsInTheBoxOfItsOnlyOwner) {
+  std::mt19937_64 random(3);
+  std::uniform_int_distribution<int> step(-8, 40);
+  for (const int size : {1, 2, 3, 4, 6, 7, 8, 64, 96}) {
+    const Decomposition boxes = Decomposition::even({0, 0, 0}, {2.0, 1.0, 0.25}, size);
+    for (int i = 0; i < 300; ++i) {
+      // In steps, so that many are on cuts; some are beyond the domain.
+      const Vec3 at{step(random) * 0x1p-4, step(random) * 0x1p-5, step(random) * 0x1p-7};
+      int owners = 0;
+      for (int rank = 0; rank < size; ++rank) {
+        const Box& box = boxes.box(rank);
+        const bool is_in = at.x >= box.low.x && at.x < box.high.x && at.y >= box.low.y &&
+                           at.y < box.high.y && at.z >= box.low.z && at.z < box.high.z;
+        if (!is_in) continue;
+        ++owners;
+        EXPECT_EQ(boxes.owner_of(at), rank);
+        EXPECT_EQ(box.distance2(at), 0.0);
+      }
+      EXPECT_EQ(owners, 1);
     }
   }
 }
 
-TEST(Decomposition, RefusesMoreRanksThanTheBoxHasRoomFor) {
-  EXPECT_THROW(Decomposition({0, 0, 0}, {0.1, 0.1, 0.1}, 64, 0, 0.02), ConfigError);
+TEST(Decomposition, BoxesAreNearlyCubesOfTheSameVolume) {
+  const Decomposition boxes = Decomposition::even({0, 0, 0}, {1.2192, 0.5334, 0.2006}, 512);
+  for (int rank = 0; rank < 512; ++rank) {
+    Box box = boxes.box(rank);
+    box.low = {std::max(box.low.x, 0.0), std::max(box.low.y, 0.0), std::max(box.low.z, 0.0)};
+    box.high = {std::min(box.high.x, 1.2192), std::min(box.high.y, 0.5334),
+                std::min(box.high.z, 0.2006)};
+    const Vec3 side = box.high - box.low;
+    EXPECT_NEAR(side.x * side.y * side.z, 1.2192 * 0.5334 * 0.2006 / 512, 1e-12);
+    // Each cut halves the longest side.
+    EXPECT_LE(std::max({side.x, side.y, side.z}), 2.0001 * std::min({side.x, side.y, side.z}));
+  }
+}
+
+TEST(Decomposition, NeighboursAreAllWithinReachOfBoxesHoweverThin) {
+  // Five sheets, the second of them 1 mm thick.
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  std::vector<Box> sheets;
+  const double faces[] = {-kFar, 0.1, 0.101, 0.15, 0.3, kFar};
+  for (int i = 0; i < 5; ++i)
+    sheets.push_back({{faces[i], -kFar, -kFar}, {faces[i + 1], kFar, kFar}});
+  std::swap(sheets[0], sheets[4]);
+  const Decomposition boxes(sheets);
+  EXPECT_EQ(boxes.neighbours(1, 0.01), (std::vector<int>{2, 4}));
+  EXPECT_EQ(boxes.neighbours(2, 0.01), (std::vector<int>{1, 3, 4}));
+  EXPECT_EQ(boxes.neighbours(4, 0.06), (std::vector<int>{1, 2, 3}));
+  EXPECT_EQ(boxes.owner_of({0.0, 0.0, 0.0}), 4);
+  EXPECT_EQ(boxes.owner_of({9.0, 0.0, 0.0}), 0);
+  EXPECT_EQ(boxes.owner_of({0.1, 0.0, 0.0}), 1);
 }
 
 StateTable some_rows(const std::vector<std::int64_t>& keys) {

@@ -44,8 +44,12 @@ double standard_drag(double re) {
 TEST(StandardDrag, IsWhatSpheresWereMeasuredToFeel) {
   // Reynolds number and drag coefficient, smoothed experiments (Lapple and Shepherd 1940 and later
   // compilations scatter by 5 %).
-  for (const auto& [re, cd] : {std::pair{57.54, 1.479}, {144.5, 0.9204}, {512.9, 0.5623},
-                               {1000.0, 0.4786}, {3162.0, 0.4074}, {8375.0, 0.3981},
+  for (const auto& [re, cd] : {std::pair{57.54, 1.479},
+                               {144.5, 0.9204},
+                               {512.9, 0.5623},
+                               {1000.0, 0.4786},
+                               {3162.0, 0.4074},
+                               {8375.0, 0.3981},
                                {26480.0, 0.4571}})
     EXPECT_NEAR(standard_drag(re) * 24.0 / re, cd, 0.05 * cd) << re;
 }
@@ -166,8 +170,8 @@ TYPED_TEST(EveryWallLaw, MeetsTheExactCreepingFactors) {
   // Haberman and Sayre 1958, exact drag factors 1.263, 1.680, 2.371, 3.596, 5.970 at ratios of 0.1
   // to 0.5; the measured law is within 10 % of them.
   if (std::string(TypeParam::kName) == "none") return;
-  for (const auto& [ratio, drag] : {std::pair{0.1, 1.263}, {0.2, 1.680}, {0.3, 2.371},
-                                    {0.4, 3.596}, {0.5, 5.970}})
+  for (const auto& [ratio, drag] :
+       {std::pair{0.1, 1.263}, {0.2, 1.680}, {0.3, 2.371}, {0.4, 3.596}, {0.5, 5.970}})
     EXPECT_NEAR(1.0 / TypeParam::factor(ratio, 0.0) / drag, 1.0, 0.1) << ratio;
 }
 
@@ -181,7 +185,8 @@ double brenner_series(double gap) {
     const double top = 2.0 * std::sinh(m * a) + m * std::sinh(2.0 * a);
     const double s = std::sinh(0.5 * m * a);
     const double t = m * std::sinh(a);
-    sum += n * (n + 1.0) / ((2.0 * n - 1.0) * (2.0 * n + 3.0)) * (top / (4.0 * s * s - t * t) - 1.0);
+    sum +=
+        n * (n + 1.0) / ((2.0 * n - 1.0) * (2.0 * n + 3.0)) * (top / (4.0 * s * s - t * t) - 1.0);
   }
   return 4.0 / 3.0 * std::sinh(a) * sum;
 }
@@ -248,8 +253,8 @@ TYPED_TEST(EveryShearLiftLaw, IsSaffmansAtSmallReynoldsNumber) {
 TEST(SaffmanMeiLift, JoinsItsTwoPartsAtReynolds40) {
   // Within the 0.0183 (1 - root) left of the exponential and the fit's rounding.
   for (const double shear : {0.01, 0.1, 0.4})
-    EXPECT_NEAR(SaffmanMeiLift::correction(40.0, shear),
-                SaffmanMeiLift::correction(40.001, shear), 0.02);
+    EXPECT_NEAR(SaffmanMeiLift::correction(40.0, shear), SaffmanMeiLift::correction(40.001, shear),
+                0.02);
 }
 
 template <class Law>
@@ -324,11 +329,11 @@ TEST(MeiAdrianHistory, ForgetsAsThePublishedKernelDoes) {
   const double f = 0.75 + 0.105 * 10.0;
   const double memory = MeiAdrianHistory::memory(at);
   for (double t = 1e-6; t < 1e3; t *= 10.0) {
-    const double published =
-        std::pow(std::pow(4.0 * kPi * t * nu / (d * d), 0.25) +
-                     std::sqrt(kPi * 1e-6 * t * t / (d * nu * f * f * f)),
-                 -2.0);
-    const double ours = d / std::sqrt(4.0 * kPi * nu * t) * std::pow(1.0 + std::pow(t / memory, 0.75), -2.0);
+    const double published = std::pow(std::pow(4.0 * kPi * t * nu / (d * d), 0.25) +
+                                          std::sqrt(kPi * 1e-6 * t * t / (d * nu * f * f * f)),
+                                      -2.0);
+    const double ours =
+        d / std::sqrt(4.0 * kPi * nu * t) * std::pow(1.0 + std::pow(t / memory, 0.75), -2.0);
     EXPECT_NEAR(ours / published, 1.0, 1e-12) << t;
   }
 }

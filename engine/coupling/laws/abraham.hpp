@@ -8,8 +8,8 @@
 
 namespace grouser {
 
-/// Single sphere with a boundary layer of thickness 9.06/sqrt(Re): Cd = 24/9.06^2 (1 + 9.06/sqrt(Re))^2.
-/// The law behind the terminal speeds of ten Cate et al. 2002.
+/// Single sphere with a boundary layer of thickness 9.06/sqrt(Re): Cd = 24/9.06^2 (1
+/// + 9.06/sqrt(Re))^2. The law behind the terminal speeds of ten Cate et al. 2002.
 struct AbrahamDrag {
   static constexpr const char* kName = "abraham";
   static constexpr const char* kSource = "Abraham 1970, Phys. Fluids 13, 2194";

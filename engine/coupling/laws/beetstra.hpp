@@ -20,13 +20,11 @@ struct BeetstraDrag {
   static double factor(double reynolds, double void_fraction) {
     const double n = void_fraction;
     const double solid = 1.0 - n;
-    const double creeping =
-        10.0 * solid / (n * n) + n * n * (1.0 + 1.5 * std::sqrt(solid));
+    const double creeping = 10.0 * solid / (n * n) + n * n * (1.0 + 1.5 * std::sqrt(solid));
     // Its inertial part goes to zero with the Reynolds number, through 0 times infinity.
     const double flux = std::max(n * reynolds, 1e-12);
     const double inertial =
-        0.413 * flux / (24.0 * n * n) *
-        (1.0 / n + 3.0 * n * solid + 8.4 * std::pow(flux, -0.343)) /
+        0.413 * flux / (24.0 * n * n) * (1.0 / n + 3.0 * n * solid + 8.4 * std::pow(flux, -0.343)) /
         (1.0 + std::pow(10.0, 3.0 * solid) * std::pow(flux, -0.5 * (1.0 + 4.0 * solid)));
     return n * (creeping + inertial);
   }

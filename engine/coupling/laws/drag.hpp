@@ -11,8 +11,8 @@ namespace grouser {
 /// (model A): a grain in a bed feels it besides, as -V grad p.
 ///
 /// A band is a range of Reynolds numbers in which the law follows the standard drag curve of a
-/// single sphere (Clift, Grace, Weber 1978, table 5.2) to `tolerance`, as a share of the drag. A law
-/// without a band above some Reynolds number is not meant for it.
+/// single sphere (Clift, Grace, Weber 1978, table 5.2) to `tolerance`, as a share of the drag. A
+/// law without a band above some Reynolds number is not meant for it.
 struct DragBand {
   double low = 0.0;   ///< Reynolds number [1]
   double high = 0.0;  ///< [1]

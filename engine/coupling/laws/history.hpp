@@ -19,8 +19,8 @@ struct BassetHistory {
   static double memory(const FluidPoint& /*at*/) { return std::numeric_limits<double>::infinity(); }
 };
 
-/// Reynolds numbers up to about 100: K falls as t^-2 at last. The slip of the moment stands for that
-/// of all of the history.
+/// Reynolds numbers up to about 100: K falls as t^-2 at last. The slip of the moment stands for
+/// that of all of the history.
 struct MeiAdrianHistory {
   static constexpr const char* kName = "mei_adrian";
   static constexpr const char* kSource = "Mei and Adrian 1992; Mei 1994";
@@ -31,8 +31,8 @@ struct MeiAdrianHistory {
     const double diffusivity = at.fluid.viscosity / at.fluid.density;
     const double f = 0.75 + 0.105 * at.reynolds();
     const double diffusion = 4.0 * std::numbers::pi * diffusivity / (at.diameter * at.diameter);
-    const double convection = std::numbers::pi * speed * speed * speed /
-                              (at.diameter * diffusivity * f * f * f);
+    const double convection =
+        std::numbers::pi * speed * speed * speed / (at.diameter * diffusivity * f * f * f);
     return std::cbrt(diffusion / (convection * convection));
   }
 };

@@ -50,8 +50,7 @@ struct OesterleLift {
 template <class Law>
 double spin_drag_coefficient(const FluidPoint& at) {
   const double d2 = at.diameter * at.diameter;
-  const double rotation =
-      at.fluid.density * d2 * norm(at.relative_spin()) / at.fluid.viscosity;
+  const double rotation = at.fluid.density * d2 * norm(at.relative_spin()) / at.fluid.viscosity;
   return std::numbers::pi * at.fluid.viscosity * d2 * at.diameter * Law::factor(rotation);
 }
 
@@ -65,8 +64,8 @@ struct KirchhoffSpinDrag {
   }
 };
 
-/// Computed for rotation numbers of 32 to 1000: torque 1/2 rho (d/2)^5 W^2 (12.9/sqrt(R) + 128.4/R),
-/// R the rotation number; creeping below, where both agree to 0.2 %.
+/// Computed for rotation numbers of 32 to 1000: torque 1/2 rho (d/2)^5 W^2 (12.9/sqrt(R) +
+/// 128.4/R), R the rotation number; creeping below, where both agree to 0.2 %.
 struct DennisSpinDrag {
   static constexpr const char* kName = "dennis";
   static constexpr const char* kSource = "Dennis, Singh, Ingham 1980";

@@ -25,10 +25,9 @@ namespace grouser {
 
 /// The laws a case can name. A new law is one file and one word in its list here, and one word in
 /// base/fluid_case.cpp; tests that walk the lists cover it.
-using DragLaw =
-    std::variant<SchillerNaumannDrag, StokesDrag, DallaValleDrag, BrownLawlerDrag, AbrahamDrag,
-                 DiFeliceDrag, DiFeliceBrownLawlerDrag, GidaspowDrag, WenYuDrag, KochHillDrag,
-                 BeetstraDrag>;
+using DragLaw = std::variant<SchillerNaumannDrag, StokesDrag, DallaValleDrag, BrownLawlerDrag,
+                             AbrahamDrag, DiFeliceDrag, DiFeliceBrownLawlerDrag, GidaspowDrag,
+                             WenYuDrag, KochHillDrag, BeetstraDrag>;
 using AddedMassLaw = std::variant<SphereAddedMass, ZuberAddedMass>;
 using HistoryLaw = std::variant<BassetHistory, MeiAdrianHistory>;
 using ShearLiftLaw = std::variant<SaffmanMeiLift, SaffmanLift>;

@@ -27,9 +27,8 @@ struct FaxenWall {
   static constexpr double kLargestRatio = 0.5;
   static double factor(double ratio, double /*reynolds*/) {
     const double r3 = ratio * ratio * ratio;
-    return 1.0 - 2.10444 * ratio + 2.08877 * r3 - 0.94813 * r3 * ratio * ratio -
-           1.372 * r3 * r3 + 3.87 * r3 * r3 * ratio * ratio -
-           4.19 * r3 * r3 * r3 * ratio;
+    return 1.0 - 2.10444 * ratio + 2.08877 * r3 - 0.94813 * r3 * ratio * ratio - 1.372 * r3 * r3 +
+           3.87 * r3 * r3 * ratio * ratio - 4.19 * r3 * r3 * r3 * ratio;
   }
 };
 
