@@ -14,6 +14,7 @@ schedulers       base
 engine/core      base
 engine/dem       base engine/core
 engine/io        base engine/core
+engine/lbm       base engine/core
 engine/terrain   base engine/core engine/dem
 engine/coupling  base engine/core engine/dem engine/lbm
 engine/app       base engine/core engine/dem engine/coupling engine/io engine/terrain
