@@ -17,7 +17,7 @@ engine/io        base engine/core
 engine/lbm       base engine/core
 engine/terrain   base engine/core engine/dem
 engine/coupling  base engine/core engine/dem engine/lbm
-engine/app       base engine/core engine/dem engine/coupling engine/io engine/terrain
+engine/app       base engine/core engine/dem engine/lbm engine/coupling engine/io engine/terrain
 campaign/plan    base schedulers
 campaign/store   base
 campaign/drive   base schedulers campaign/plan campaign/store

@@ -22,8 +22,7 @@ CellBlocks::CellBlocks(const CellCounts& cells, const std::array<bool, 3>& perio
   std::int64_t least = std::numeric_limits<std::int64_t>::max();
   for (int y = 1; y <= ranks.size(); ++y) {
     const int z = ranks.size() / y;
-    if (y * z != ranks.size() || !divides(cells[1], y) || !divides(cells[2], z))
-      continue;
+    if (y * z != ranks.size() || !divides(cells[1], y) || !divides(cells[2], z)) continue;
     const std::int64_t cut = (y - 1) * cells[2] + (z - 1) * cells[1];
     if (cut >= least) continue;
     least = cut;

@@ -97,17 +97,16 @@ struct Symmetric {
 template <class Set, class T>
 struct NodeMoments {
   static constexpr std::size_t kPairs = Set::kVelocities / 2;
-  T even[kPairs];      ///< f(2k+1) + f(2k+2)
-  T odd[kPairs];       ///< f(2k+1) - f(2k+2)
-  T excess;            ///< density - 1
-  T density;           ///<
-  Vec3T<T> momentum;   ///< with half of the force of this step (Guo, Zheng, Shi 2002)
-  Vec3T<T> velocity;   ///< momentum / density
+  T even[kPairs];  ///< f(2k+1) + f(2k+2)
+  T odd[kPairs];   ///< f(2k+1) - f(2k+2)
+  T excess;        ///< density - 1
+  T density;
+  Vec3T<T> momentum;  ///< with half of the force of this step (Guo, Zheng, Shi 2002)
+  Vec3T<T> velocity;  ///< momentum / density
 };
 
 template <bool kForced, class Set, class T, class Real>
-[[gnu::always_inline]] inline NodeMoments<Set, T> moments_of(const T* f,
-                                                            const Vec3T<Real>& force) {
+[[gnu::always_inline]] inline NodeMoments<Set, T> moments_of(const T* f, const Vec3T<Real>& force) {
   NodeMoments<Set, T> m;
   m.excess = f[0];
   unroll<Set::kVelocities / 2>([&](auto k) GROUSER_INLINE {
@@ -144,8 +143,7 @@ struct TwoRates {
   }
   static TwoRates trt(const CollisionParameters& p) {
     const double time = relaxation_time(p.viscosity_lu);
-    return {static_cast<Real>(1.0 / time),
-            static_cast<Real>(1.0 / (p.magic / (time - 0.5) + 0.5))};
+    return {static_cast<Real>(1.0 / time), static_cast<Real>(1.0 / (p.magic / (time - 0.5) + 0.5))};
   }
 
   /// Replaces what arrives at a node by what leaves it.
@@ -240,8 +238,12 @@ struct ManyRates {
     // What the other rate takes too much from the stress is given back.
     const T sheared = others.even - shear_rate<Set>(s, m.density);
     const T squeezed = (others.even - bulk) * mean;
-    s = {sheared * s.xx + squeezed, sheared * s.yy + squeezed, sheared * s.zz + squeezed,
-         sheared * s.xy,            sheared * s.xz,            sheared * s.yz};
+    s = {sheared * s.xx + squeezed,
+         sheared * s.yy + squeezed,
+         sheared * s.zz + squeezed,
+         sheared * s.xy,
+         sheared * s.xz,
+         sheared * s.yz};
     const T third = Real(1.0 / 3.0) * ((others.even - bulk) * trace);
     others.template relax<Set, kForced>(f, m, force, [&](auto k) GROUSER_INLINE {
       if constexpr (k == Set::kVelocities / 2) {

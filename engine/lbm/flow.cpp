@@ -4,19 +4,26 @@
 #include <algorithm>
 
 #include "base/errors.hpp"
-#include "engine/lbm/flow_makers.hpp"
+#include "engine/lbm/flow_of.hpp"
 
 namespace grouser {
 namespace {
+
+template <class Set>
+std::unique_ptr<Flow> make(const Communicator& ranks, const FlowSettings& settings) {
+  if (settings.precision == Precision::kSingle)
+    return std::make_unique<FlowOf<Set, float>>(ranks, settings);
+  return std::make_unique<FlowOf<Set, double>>(ranks, settings);
+}
 
 struct Maker {
   const char* lattice;
   std::unique_ptr<Flow> (*make)(const Communicator&, const FlowSettings&);
 };
-constexpr std::array<Maker, 4> kMakers = {{{"D2Q9", make_d2q9_flow},
-                                           {"D3Q15", make_d3q15_flow},
-                                           {"D3Q19", make_d3q19_flow},
-                                           {"D3Q27", make_d3q27_flow}}};
+constexpr std::array<Maker, 4> kMakers = {{{D2Q9::kName, make<D2Q9>},
+                                           {D3Q15::kName, make<D3Q15>},
+                                           {D3Q19::kName, make<D3Q19>},
+                                           {D3Q27::kName, make<D3Q27>}}};
 
 template <class List>
 std::vector<std::string> names_of(const List& list) {
@@ -56,8 +63,8 @@ std::vector<Problem> problems_of(const FlowSettings& settings) {
                                    ", which must be over 0.5",
                                "the viscosity must be positive"));
   if (!(p.magic > 0.0)) problems.push_back(problem("magic", "must be positive", "3/16 is usual"));
-  for (const auto& [key, rate] : {std::pair{"bulk_rate", p.bulk_rate},
-                                  std::pair{"higher_rate", p.higher_rate}})
+  for (const auto& [key, rate] :
+       {std::pair{"bulk_rate", p.bulk_rate}, std::pair{"higher_rate", p.higher_rate}})
     if (!(rate > 0.0 && rate < 2.0))
       problems.push_back(problem(key, "must be between 0 and 2", "1 is usual"));
   if (settings.collision == "les" && !(p.smagorinsky >= 0.0))

@@ -50,14 +50,14 @@ struct Obstacle {
 };
 
 struct FlowSettings {
-  std::string lattice = "D3Q19";   ///< one of kLattices
-  std::string collision = "trt";   ///< one of kCollisions
+  std::string lattice = "D3Q19";  ///< one of kLattices
+  std::string collision = "trt";  ///< one of kCollisions
   Precision precision = Precision::kDouble;
   CollisionParameters parameters;
-  CellCounts cells{1, 1, 1};       ///< along x, y, z; a flat lattice has one along z
+  CellCounts cells{1, 1, 1};  ///< along x, y, z; a flat lattice has one along z
   /// Low and high end of x, y, z.
   std::array<std::array<Face, 2>, 3> faces{};
-  Vec3 force_lu{};                 ///< body force density
+  Vec3 force_lu{};  ///< body force density
   std::vector<Obstacle> obstacles;
 };
 
@@ -70,10 +70,10 @@ struct FlowNode {
 /// Sums over all cells of fluid. Exact, so the same on any number of ranks.
 struct FlowTotals {
   double cells = 0.0;
-  double excess_lu = 0.0;        ///< mass beyond that of the fluid at rest
+  double excess_lu = 0.0;  ///< mass beyond that of the fluid at rest
   Vec3 momentum_lu{};
-  double max_speed_lu = 0.0;     ///< largest velocity
-  bool finite = true;            ///< whether no number was lost
+  double max_speed_lu = 0.0;  ///< largest velocity
+  bool finite = true;         ///< whether no number was lost
 };
 
 /// What the fluid did to one body or face in the last step.

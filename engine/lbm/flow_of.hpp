@@ -9,6 +9,7 @@
 #include "engine/lbm/flow.hpp"
 #include "engine/lbm/open_faces.hpp"
 #include "engine/lbm/population_halo.hpp"
+#include "engine/lbm/sweep_rows.hpp"
 #include "engine/lbm/wall_links_impl.hpp"
 
 namespace grouser {
@@ -33,14 +34,10 @@ class FlowOf final : public Flow {
   }
 
   void step() override {
-    if (streaming_.parity() == Parity::kEven) {
-      quieten_dead_cells();
-      sweep_rows<Parity::kEven>();
-      streaming_.set_parity(Parity::kOdd);
-    } else {
-      sweep_rows<Parity::kOdd>();
-      streaming_.set_parity(Parity::kEven);
-    }
+    const bool even = streaming_.parity() == Parity::kEven;
+    if (even) quieten_dead_cells();
+    sweep_all();
+    streaming_.set_parity(even ? Parity::kOdd : Parity::kEven);
     complete();
     ++steps_;
   }
@@ -56,9 +53,8 @@ class FlowOf final : public Flow {
         // Half of the first step's force has not yet acted.
         const double push = c.x * force_.x + c.y * force_.y + c.z * force_.z;
         *streaming_.arriving(i, x, y, z) = static_cast<Real>(
-            Set::kSet.weights[i] *
-            (node.density_lu - 1.0 - 1.5 * push +
-             node.density_lu * (3.0 * cu + 4.5 * cu * cu - 1.5 * norm2(u))));
+            Set::kSet.weights[i] * (node.density_lu - 1.0 - 1.5 * push +
+                                    node.density_lu * (3.0 * cu + 4.5 * cu * cu - 1.5 * norm2(u))));
       }
     });
   }
@@ -73,8 +69,7 @@ class FlowOf final : public Flow {
     GROUSER_CHECK(blocks_.owns(x, y, z));
     return local_node(x - blocks_.low(0), y - blocks_.low(1), z - blocks_.low(2));
   }
-  double population(std::size_t i, std::int64_t x, std::int64_t y,
-                    std::int64_t z) const override {
+  double population(std::size_t i, std::int64_t x, std::int64_t y, std::int64_t z) const override {
     GROUSER_CHECK(blocks_.owns(x, y, z));
     return *streaming_.arriving(i, x - blocks_.low(0), y - blocks_.low(1), z - blocks_.low(2));
   }
@@ -189,19 +184,9 @@ class FlowOf final : public Flow {
     }
   }
 
-  template <Parity kParity>
-  void sweep_rows() {
-    const Vec3T<Real> force{static_cast<Real>(force_.x), static_cast<Real>(force_.y),
-                            static_cast<Real>(force_.z)};
+  void sweep_all() {
     const SweepRange range{rows_.data(), rows_.size(), spans_.data(), streaming_.period_x()};
-    std::visit(
-        [&](const auto& collision) {
-          if (force_ == Vec3{})
-            sweep<Set, Real, false, kParity>(streaming_.populations(), collision, force, range);
-          else
-            sweep<Set, Real, true, kParity>(streaming_.populations(), collision, force, range);
-        },
-        collision_);
+    sweep_rows<Set, Real>(streaming_, collision_, force_, range);
   }
 
   // Makes all that arrives at a cell known, wherever it comes from.

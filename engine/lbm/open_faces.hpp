@@ -70,8 +70,7 @@ class OpenFaces {
   };
 
   static bool is_open(FaceKind kind) {
-    return kind == FaceKind::kVelocity || kind == FaceKind::kPressure ||
-           kind == FaceKind::kOutflow;
+    return kind == FaceKind::kVelocity || kind == FaceKind::kPressure || kind == FaceKind::kOutflow;
   }
 
   static bool on_earlier(const FlowSettings& settings, const CellBlocks& blocks,
@@ -90,10 +89,9 @@ class OpenFaces {
     const int step = face.end == 0 ? 1 : -1;
     for (std::size_t i = 1; i < Set::kVelocities; ++i) {
       if (face.inward(Set::kSet.velocities[i]) != 1) continue;
-      *streaming.arriving(i, cell.x, cell.y, cell.z) =
-          *streaming.arriving(i, cell.x + (face.axis == 0 ? step : 0),
-                              cell.y + (face.axis == 1 ? step : 0),
-                              cell.z + (face.axis == 2 ? step : 0));
+      *streaming.arriving(i, cell.x, cell.y, cell.z) = *streaming.arriving(
+          i, cell.x + (face.axis == 0 ? step : 0), cell.y + (face.axis == 1 ? step : 0),
+          cell.z + (face.axis == 2 ? step : 0));
     }
   }
 

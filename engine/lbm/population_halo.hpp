@@ -65,9 +65,9 @@ class PopulationHalo {
       const LatticeVelocity c = Set::kSet.velocities[i];
       if ((axis == 1 ? c.y : c.z) != direction) continue;
       for (std::int64_t row = 0; row < rows; ++row, at += length) {
-        Real* const cells = populations.of(i) + (axis == 1
-                                                     ? populations.at(-1, layer, row - box.ghosts_z)
-                                                     : populations.at(-1, row - 1, layer));
+        Real* const cells =
+            populations.of(i) + (axis == 1 ? populations.at(-1, layer, row - box.ghosts_z)
+                                           : populations.at(-1, row - 1, layer));
         if (pack)
           std::memcpy(at, cells, length * sizeof(Real));
         else

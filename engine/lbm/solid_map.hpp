@@ -29,8 +29,8 @@ class SolidMap {
 
  private:
   std::size_t index(std::int64_t x, std::int64_t y, std::int64_t z) const {
-    return static_cast<std::size_t>(
-        ((z + box_.ghosts_z) * (box_.ny + 2) + y + 1) * (box_.nx + 2) + x + 1);
+    return static_cast<std::size_t>(((z + box_.ghosts_z) * (box_.ny + 2) + y + 1) * (box_.nx + 2) +
+                                    x + 1);
   }
   std::int16_t beyond(std::int64_t x, std::int64_t y, std::int64_t z) const;
 

@@ -56,7 +56,7 @@ class WallLinks {
     std::uint8_t velocity;  // index of what arrives
     bool interpolated;      // false: half-way
     std::uint16_t surface;
-    double share;           // q
+    double share;  // q
   };
   struct Mirror {
     Cell cell;

@@ -18,9 +18,9 @@ WallLinks<Set, Real>::WallLinks(const FlowSettings& settings, const CellBlocks& 
   const auto on_face = [&](const Cell& c) {
     const std::int64_t at[3] = {c.x, c.y, c.z};
     for (int a = 0; a < Set::kDimensions; ++a)
-      if (!blocks.periodic(a) && (at[a] + blocks.low(a) == 0 ||
-                                  at[a] + blocks.low(a) + 1 ==
-                                      blocks.cells()[static_cast<std::size_t>(a)]))
+      if (!blocks.periodic(a) &&
+          (at[a] + blocks.low(a) == 0 ||
+           at[a] + blocks.low(a) + 1 == blocks.cells()[static_cast<std::size_t>(a)]))
         return true;
     return false;
   };
@@ -99,8 +99,7 @@ auto WallLinks<Set, Real>::mirror_of(const FlowSettings& settings, const SolidMa
 
 // Where on the link from the cell into the obstacle the surface is, by bisection.
 template <class Set, class Real>
-void WallLinks<Set, Real>::cut(const Obstacle& obstacle, const SolidMap& solids,
-                               Link& link) const {
+void WallLinks<Set, Real>::cut(const Obstacle& obstacle, const SolidMap& solids, Link& link) const {
   const LatticeVelocity c = Set::kSet.velocities[link.velocity];
   if (!solids.is_fluid(link.cell.x + c.x, link.cell.y + c.y, link.cell.z + c.z)) return;
   const Vec3 centre = centre_of(blocks_, link.cell.x, link.cell.y, link.cell.z);
@@ -124,8 +123,7 @@ void WallLinks<Set, Real>::set_face_velocity(int axis, int end, const Vec3& velo
 template <class Set, class Real>
 Vec3 WallLinks<Set, Real>::meeting(const Link& link) const {
   const LatticeVelocity c = Set::kSet.velocities[link.velocity];
-  const Vec3 back{static_cast<double>(-c.x), static_cast<double>(-c.y),
-                  static_cast<double>(-c.z)};
+  const Vec3 back{static_cast<double>(-c.x), static_cast<double>(-c.y), static_cast<double>(-c.z)};
   return centre_of(blocks_, link.cell.x, link.cell.y, link.cell.z) + link.share * back;
 }
 
@@ -152,10 +150,10 @@ void WallLinks<Set, Real>::apply(Streaming<Set, Real>& streaming) const {
       const auto twice = static_cast<Real>(2.0 * link.share);
       const LatticeVelocity c = Set::kSet.velocities[i];
       if (link.share < 0.5)
-        value = twice * back +
-                (Real(1) - twice) *
-                    *streaming.sent(opposite(i), at.x + c.x, at.y + c.y, at.z + c.z) +
-                moved;
+        value =
+            twice * back +
+            (Real(1) - twice) * *streaming.sent(opposite(i), at.x + c.x, at.y + c.y, at.z + c.z) +
+            moved;
       else
         value = (back + (twice - Real(1)) * *streaming.sent(i, at.x, at.y, at.z) + moved) / twice;
     }
@@ -169,8 +167,7 @@ void WallLinks<Set, Real>::apply(Streaming<Set, Real>& streaming) const {
 }
 
 template <class Set, class Real>
-auto WallLinks<Set, Real>::loads(const Streaming<Set, Real>& streaming) const
-    -> std::vector<Sums> {
+auto WallLinks<Set, Real>::loads(const Streaming<Set, Real>& streaming) const -> std::vector<Sums> {
   std::vector<Sums> loads(surfaces_.size());
   for (const Link& link : links_) {
     const Cell& at = link.cell;
@@ -180,8 +177,7 @@ auto WallLinks<Set, Real>::loads(const Streaming<Set, Real>& streaming) const
     const Surface& surface = surfaces_[link.surface];
     const Vec3 point = meeting(link);
     const Vec3 velocity = surface.velocity + cross(surface.spin, point - surface.centre);
-    const Vec3 along{static_cast<double>(c.x), static_cast<double>(c.y),
-                     static_cast<double>(c.z)};
+    const Vec3 along{static_cast<double>(c.x), static_cast<double>(c.y), static_cast<double>(c.z)};
     const Vec3 force = gone * (-along - velocity) - came * (along - velocity);
     const Vec3 moment = cross(point - surface.centre, force);
     Sums& sums = loads[link.surface];

@@ -20,7 +20,9 @@ void walls(FlowSettings& settings, std::size_t axis) {
   for (Face& face : settings.faces[axis]) face.kind = FaceKind::kWall;
 }
 
-double component(const Vec3& v, std::size_t axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+double component(const Vec3& v, std::size_t axis) {
+  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+}
 Vec3 along(std::size_t axis, double value) {
   return {axis == 0 ? value : 0.0, axis == 1 ? value : 0.0, axis == 2 ? value : 0.0};
 }
@@ -41,8 +43,8 @@ struct Vortices {
     const double left = std::exp(-2.0 * viscosity * k * k * time);
     const double u = speed * left;
     FlowNode node;
-    node.velocity_lu = wind + along(a, -u * std::cos(x) * std::sin(y)) +
-                       along(b, u * std::sin(x) * std::cos(y));
+    node.velocity_lu =
+        wind + along(a, -u * std::cos(x) * std::sin(y)) + along(b, u * std::sin(x) * std::cos(y));
     node.density_lu = 1.0 - 3.0 * u * u / 4.0 * (std::cos(2.0 * x) + std::cos(2.0 * y));
     return node;
   }

@@ -39,10 +39,10 @@ TYPED_TEST(EveryLattice, HasTheMomentsOfAMaxwellDistributionUpToTheFifth) {
       for (int c = 0; c < kD; ++c) {
         EXPECT_NEAR(moment({a, b, c}), 0.0, kRounding);
         for (int d = 0; d < kD; ++d) {
-          EXPECT_NEAR(moment({a, b, c, d}),
-                      (same(a, b) * same(c, d) + same(a, c) * same(b, d) + same(a, d) * same(b, c)) /
-                          9.0,
-                      kRounding);
+          EXPECT_NEAR(
+              moment({a, b, c, d}),
+              (same(a, b) * same(c, d) + same(a, c) * same(b, d) + same(a, d) * same(b, c)) / 9.0,
+              kRounding);
           for (int e = 0; e < kD; ++e) EXPECT_NEAR(moment({a, b, c, d, e}), 0.0, kRounding);
         }
       }
@@ -106,9 +106,8 @@ double difference(const FlowSettings& settings, std::uint64_t seed, int steps, d
   for (; row < table.rows(); ++row) {
     const std::int64_t key = table.integers[2 * row];
     for (std::size_t i = 0; i < Set::kVelocities; ++i) {
-      const double value =
-          Set::kSet.weights[i] *
-          (0.1 * random_unit(seed, static_cast<std::uint64_t>(key), i) - 0.05);
+      const double value = Set::kSet.weights[i] *
+                           (0.1 * random_unit(seed, static_cast<std::uint64_t>(key), i) - 0.05);
       const auto stored =
           settings.precision == Precision::kSingle ? double{static_cast<float>(value)} : value;
       table.reals[row * Set::kVelocities + i] = stored;
@@ -127,8 +126,7 @@ double difference(const FlowSettings& settings, std::uint64_t seed, int steps, d
         EXPECT_EQ(flow->is_fluid(x, y, z), oracle.is_fluid(x, y, z));
         if (!oracle.is_fluid(x, y, z)) continue;
         for (std::size_t i = 0; i < Set::kVelocities; ++i) {
-          worst = std::max(worst,
-                           std::abs(flow->population(i, x, y, z) - oracle.get(i, x, y, z)));
+          worst = std::max(worst, std::abs(flow->population(i, x, y, z) - oracle.get(i, x, y, z)));
           largest = std::max(largest, std::abs(oracle.get(i, x, y, z)));
         }
       }

@@ -35,7 +35,9 @@ class ReferenceLattice {
 
   void step() {
     std::vector<double> after = f_;
-    each([&](std::int64_t x, std::int64_t y, std::int64_t z) { collide(&after[index(0, x, y, z)]); });
+    each([&](std::int64_t x, std::int64_t y, std::int64_t z) {
+      collide(&after[index(0, x, y, z)]);
+    });
     each([&](std::int64_t x, std::int64_t y, std::int64_t z) {
       for (std::size_t i = 0; i < kQ; ++i) {
         std::int64_t from[3] = {x - c(i, 0), y - c(i, 1), z - c(i, 2)};

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/lbm/streaming.hpp"
+
+namespace grouser {
+
+/// The sweep that is due, with this collision. Compiled apart for each lattice: every one has
+/// sweeps of all collisions, with and without force, in both precisions. Local.
+template <class Set, class Real>
+void sweep_rows(Streaming<Set, Real>& streaming, const Collision<Real>& collision,
+                const Vec3& force, const SweepRange& range);
+
+}  // namespace grouser
