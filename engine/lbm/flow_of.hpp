@@ -29,16 +29,37 @@ class FlowOf final : public Flow {
         solids_(settings, blocks_, box_),
         walls_(settings, blocks_, solids_, box_),
         open_(settings, blocks_, solids_, box_) {
-    for (std::int64_t z = 0; z < box_.nz; ++z)
-      for (std::int64_t y = 0; y < box_.ny; ++y) add_row(y, z);
+    const auto add_rows = [&](bool outer) {
+      for (std::int64_t z = 0; z < box_.nz; ++z)
+        for (std::int64_t y = 0; y < box_.ny; ++y)
+          if (at_face(y, z) == outer) add_row(y, z);
+    };
+    add_rows(true);
+    outer_rows_ = rows_.size();
+    add_rows(false);
   }
 
   void step() override {
-    const bool even = streaming_.parity() == Parity::kEven;
-    if (even) quieten_dead_cells();
-    sweep_all();
-    streaming_.set_parity(even ? Parity::kOdd : Parity::kEven);
-    complete();
+    const Parity due = streaming_.parity();
+    const Parity next = due == Parity::kEven ? Parity::kOdd : Parity::kEven;
+    if (due == Parity::kEven) quieten_dead_cells();
+    // Rows next to faces first: what they sent travels while the others are swept.
+    sweep_part(0, outer_rows_);
+    const std::size_t inner = rows_.size() - outer_rows_;
+    std::size_t from = outer_rows_;
+    for (int stage = 0; stage < Halo::kAxes; ++stage) {
+      const std::size_t to = outer_rows_ + inner * static_cast<std::size_t>(stage + 1) /
+                                               static_cast<std::size_t>(Halo::kAxes);
+      streaming_.set_parity(next);
+      halo_.begin(streaming_, stage);
+      streaming_.set_parity(due);
+      sweep_part(from, to);
+      from = to;
+      streaming_.set_parity(next);
+      halo_.end(streaming_);
+    }
+    walls_.apply(streaming_);
+    open_.apply(streaming_, force_);
     ++steps_;
   }
 
@@ -134,6 +155,8 @@ class FlowOf final : public Flow {
   void end_load() override;
 
  private:
+  using Halo = PopulationHalo<Set, Real>;
+
   static std::array<bool, 3> periodic_axes(const FlowSettings& settings) {
     std::array<bool, 3> periodic{};
     for (std::size_t a = 0; a < 3; ++a)
@@ -147,6 +170,10 @@ class FlowOf final : public Flow {
       for (std::int64_t y = 0; y < box_.ny; ++y)
         for (std::int64_t x = 0; x < box_.nx; ++x)
           if (solids_.is_fluid(x, y, z)) visit(x, y, z);
+  }
+
+  bool at_face(std::int64_t y, std::int64_t z) const {
+    return y == 0 || y + 1 == box_.ny || (box_.ghosts_z > 0 && (z == 0 || z + 1 == box_.nz));
   }
 
   // Whole registers from the first to the last cell of fluid of each stretch.
@@ -184,16 +211,9 @@ class FlowOf final : public Flow {
     }
   }
 
-  void sweep_all() {
-    const SweepRange range{rows_.data(), rows_.size(), spans_.data(), streaming_.period_x()};
+  void sweep_part(std::size_t from, std::size_t to) {
+    const SweepRange range{rows_.data() + from, to - from, spans_.data(), streaming_.period_x()};
     sweep_rows<Set, Real>(streaming_, collision_, force_, range);
-  }
-
-  // Makes all that arrives at a cell known, wherever it comes from.
-  void complete() {
-    halo_.exchange(streaming_);
-    walls_.apply(streaming_);
-    open_.apply(streaming_, force_);
   }
 
   FlowNode local_node(std::int64_t x, std::int64_t y, std::int64_t z) const {
@@ -214,11 +234,12 @@ class FlowOf final : public Flow {
   Vec3 force_;
   Collision<Real> collision_;
   Streaming<Set, Real> streaming_;
-  PopulationHalo<Set, Real> halo_;
+  Halo halo_;
   SolidMap solids_;
   WallLinks<Set, Real> walls_;
   OpenFaces<Set, Real> open_;
   std::vector<Row> rows_;
+  std::size_t outer_rows_ = 0;  // of rows_, those at faces of the block
   std::vector<Span> spans_;
   std::vector<std::int32_t> dead_;
   std::int64_t steps_ = 0;
