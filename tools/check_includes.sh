@@ -39,6 +39,7 @@ fences='
 ^mpi[.]h$                     ^(engine/core/|tests/engine/mpi_main[.]cpp$)
 ^zoltan[.]h$                  ^engine/core/
 ^(hdf5|H5[A-Za-z]*|hdf5_hl)[.]h(pp)?$  ^engine/io/
+^omp[.]h$                     ^engine/core/
 ^(sqlite3[.]h$|SQLiteCpp/)    ^campaign/store/
 ^yaml-cpp/                    ^base/
 ^(udunits2|xxhash)[.]h$       ^base/

@@ -227,7 +227,11 @@ void Messages::finish() {
   requests_->all.clear();
 }
 
-ParallelSession::ParallelSession(int* argc, char*** argv) { MPI_Init(argc, argv); }
+ParallelSession::ParallelSession(int* argc, char*** argv) {
+  // Only the first thread of a rank talks to MPI.
+  int provided = MPI_THREAD_SINGLE;
+  MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
+}
 ParallelSession::~ParallelSession() { MPI_Finalize(); }
 
 void leave_at_once(const Communicator& ranks, int code) {

@@ -26,6 +26,7 @@ class ExactSum {
                                    : static_cast<Integer>(mantissa) << shift;
     sum_ += (bits >> 63) != 0 ? -size : size;
   }
+  void add(const ExactSum& other) { sum_ += other.sum_; }
   double value() const { return static_cast<double>(sum_) * (1.0 / kScale); }
 
   Limbs limbs() const {

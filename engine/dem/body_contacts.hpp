@@ -1,33 +1,39 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "engine/core/exact_sum.hpp"
 #include "engine/core/particle.hpp"
 #include "engine/core/state_io.hpp"
+#include "engine/core/threads.hpp"
 #include "engine/dem/body.hpp"
 #include "engine/dem/laws/table.hpp"
 
 namespace grouser {
 
 /// Force [N] and moment about the body's axle [N m] of the grains on a body; sums that do not
-/// depend on ranks.
+/// depend on ranks or threads.
 struct BodyLoad {
   ExactSum force_x, force_y, force_z;
   ExactSum force_moment_y;  ///< of the contact forces: force tangential to the circle x distance
   ExactSum couple_y;        ///< rolling resistance of the grains, which has no force
 
   double moment_y() const { return force_moment_y.value() + couple_y.value(); }
+  void add(const BodyLoad& other);
 };
 
 /// Contacts of owned grains with one body, under the same laws as grain pairs. A grain may touch a
 /// body in several places (a corner); each touch has its own history, which follows the grain from
 /// facet to neighbouring facet.
+///
+/// Each thread looks after a part of the grains near the body, neighbours in memory, and all that
+/// belongs to them.
 class BodyContacts {
  public:
-  BodyContacts(ContactLaw law, RollingLaw rolling);
+  BodyContacts(ContactLaw law, RollingLaw rolling, Threads threads);
 
   /// Keeps a touch of the owned grain `grain` for the next build. @param values history_width()
   /// numbers
@@ -63,52 +69,99 @@ class BodyContacts {
   /// @return largest overlap over grain radius [1]
   double sweep(const std::vector<Particle>& particles, const Body& body, double time_step,
                BodyLoad& load);
-  /// Of the last sweep, ordered by grain.
-  const std::vector<Push>& pushes() const { return pushes_; }
 
-  std::size_t count() const { return touches_.size(); }
+  /// Calls visit(push) for what the last sweep did to the grains first ... last-1, grain by grain.
+  template <class Visit>
+  void each_push(std::size_t first, std::size_t last, const Visit& visit) const {
+    for (const Part& part : parts_)
+      for (auto at = first_of(part.pushes, first); at != part.pushes.end() && at->particle < last;
+           ++at)
+        visit(*at);
+  }
+
+  std::size_t count() const;
   std::size_t history_width() const { return history_width_; }
 
-  /// The touch of an owned grain; `at` counts up through touches ordered by grain.
+  /// Calls visit(grain, facet, history) for the touches of the grains first ... last-1, grain by
+  /// grain.
+  template <class Visit>
+  void each_touch(std::size_t first, std::size_t last, const Visit& visit) const {
+    const auto each_of = [&](const Touches& touches) {
+      for (auto at = first_of(touches.at, first); at != touches.at.end() && at->particle < last;
+           ++at)
+        visit(at->particle, at->facet,
+              touches.history.data() +
+                  static_cast<std::size_t>(at - touches.at.begin()) * history_width_);
+    };
+    each_of(kept_);
+    for (const Part& part : parts_) each_of(part.touches);
+  }
+
+ private:
   struct Touch {
     std::uint32_t particle = 0;
     int facet = 0;
   };
-  const std::vector<Touch>& touches() const { return touches_; }
-  const double* history(std::size_t touch) const {
-    return history_.data() + touch * history_width_;
-  }
-
- private:
-  template <class Law, class Rolling>
-  double sweep(const Law& law, const Rolling& rolling, const std::vector<Particle>& particles,
-               const Body& body, double time_step, BodyLoad& load);
-  /// Finds the history of a touch among those of the same grain in the step before.
-  void inherit(std::size_t first, std::size_t last, const MeshSearch& search,
-               const std::vector<MeshTouch>& now, std::vector<double>& histories);
-
-  ContactLaw law_;
-  RollingLaw rolling_;
-  std::size_t history_width_ = 0;
-  void find_close(const std::vector<Particle>& particles, const Body& body);
-
-  double skin_ = 0.0;
-  std::vector<std::uint32_t> near_;
-  // Of them, those that may touch before grains or body have come closer by gap_, each with the
-  // number of facets it may touch, and those facets one grain after the other.
+  // By grain, then facet.
+  struct Touches {
+    std::vector<Touch> at;
+    std::vector<double> history;  // history_width_ numbers each
+    void clear() {
+      at.clear();
+      history.clear();
+    }
+  };
+  // A grain that may touch before grains or body have come closer by gap_, with the number of
+  // facets it may touch.
   struct Close {
     std::uint32_t particle;
     std::uint32_t facets;
   };
-  std::vector<Close> close_;
-  std::vector<int> facets_;
-  double gap_ = 0.0;            // [m]; 0 = not known
-  double travel_ = 0.0;         // bound of how much closer they have come since [m]
-  std::vector<Touch> touches_;  // of the last step, by grain, then facet
-  std::vector<double> history_;
-  std::vector<Push> pushes_;
-  std::vector<Touch> next_touches_;
-  std::vector<double> next_history_;
+  // The grains near_[first] ... near_[last-1] and what belongs to them.
+  struct alignas(64) Part {
+    std::size_t first = 0;
+    std::size_t last = 0;
+    std::vector<Close> close;
+    std::vector<int> facets;  // of one close grain after the other
+    Touches touches;          // of the last step
+    Touches next;
+    std::vector<Push> pushes;
+    BodyLoad load;
+    double largest = 0.0;  // overlap over grain radius
+    // Of the grain that is being looked at.
+    std::vector<MeshTouch> now;
+    std::vector<double> histories;
+  };
+
+  // The first of the records, which are ordered by grain, that belongs to a grain from `grain` on.
+  template <class Record>
+  static typename std::vector<Record>::const_iterator first_of(const std::vector<Record>& records,
+                                                               std::size_t grain) {
+    return std::lower_bound(
+        records.begin(), records.end(), grain,
+        [](const Record& record, std::size_t wanted) { return record.particle < wanted; });
+  }
+
+  void collect();
+  void look(const std::vector<Particle>& particles, std::size_t owned, const Body& body);
+  void find_close(const std::vector<Particle>& particles, const Body& body, Part& part) const;
+  template <class Law, class Rolling>
+  void sweep(const Law& law, const Rolling& rolling, const std::vector<Particle>& particles,
+             const Body& body, double time_step, Part& part) const;
+  /// Finds the histories of the touches `now` among those first ... last-1 of the same grain in the
+  /// step before.
+  void inherit(Part& part, std::size_t first, std::size_t last, const MeshSearch& search) const;
+
+  ContactLaw law_;
+  RollingLaw rolling_;
+  Threads threads_;
+  std::size_t history_width_ = 0;
+  double skin_ = 0.0;
+  std::vector<std::uint32_t> near_;
+  std::vector<Part> parts_;
+  Touches kept_;         // while no part holds them
+  double gap_ = 0.0;     // [m]; 0 = not known
+  double travel_ = 0.0;  // bound of how much closer grains and body have come since [m]
 };
 
 }  // namespace grouser

@@ -3,23 +3,28 @@
 
 #include <cstdint>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "engine/core/aligned.hpp"
 #include "engine/core/particle.hpp"
 #include "engine/core/state_io.hpp"
+#include "engine/core/threads.hpp"
 #include "engine/dem/laws/table.hpp"
 #include "engine/dem/pair_histories.hpp"
 #include "engine/dem/pair_slots.hpp"
+#include "engine/dem/sweep_plan.hpp"
 
 namespace grouser {
+
+class PairSearch;
 
 /// Contacts between grains: neighbour list, contact histories, forces.
 ///
 /// Each pair is evaluated once per rank that owns one of its grains, oriented from the higher to
 /// the lower id, and each grain adds its pair forces in the order of partner ids. So forces do not
-/// depend, to the last bit, on the order of particles in memory, on ranks, on the skin or on when
-/// a list was made.
+/// depend, to the last bit, on the order of particles in memory, on ranks, on threads, on the
+/// skin or on when a list was made.
 ///
 /// Two lists: all pairs that may touch before grains have moved half a skin, and within it the
 /// slots, those pairs that may touch within the next steps. Only slots are looked at in a step,
@@ -27,7 +32,7 @@ namespace grouser {
 /// always have slots, so that the rest's slots need not reach as far as they do.
 class PairContacts {
  public:
-  PairContacts(ContactLaw law, RollingLaw rolling);
+  PairContacts(ContactLaw law, RollingLaw rolling, Threads threads);
 
   void set_laws(ContactLaw law, RollingLaw rolling);  ///< of the same kinds; histories stay
 
@@ -56,11 +61,18 @@ class PairContacts {
   /// @param skin      pairs closer than the sum of radii + skin are listed [m]
   void build(const std::vector<Particle>& particles, std::size_t owned, double skin);
 
-  /// Takes over a few neighbouring owned grains first ... last-1 whose pair forces [N] and moments
-  /// [N m] are complete, four numbers each. No other grain needs their positions any more in this
-  /// step, so they may be moved.
-  using Finish = std::function<void(std::size_t first, std::size_t last, const double* forces,
-                                    const double* moments)>;
+  /// A few neighbouring owned grains first ... last-1 whose pair forces [N] and moments [N m] are
+  /// complete, four numbers each, which may be written to.
+  struct Ready {
+    std::size_t share;  ///< of the threads; tells apart what runs at the same time
+    std::size_t first;
+    std::size_t last;
+    double* forces;
+    double* moments;
+  };
+  /// Takes them over. No other grain needs their positions any more in this step, so they may be
+  /// moved. Called by several threads at a time, in no particular order.
+  using Finish = std::function<void(const Ready&)>;
 
   /// Evaluates all contacts and hands over all owned grains.
   /// @return largest overlap over the smaller radius of the pair [1]
@@ -94,44 +106,66 @@ class PairContacts {
     std::vector<std::uint32_t> partner;  // the second grain of each pair
     PairSlots slots;                     // in the order of pairs
     std::vector<std::uint32_t> chunk_end;
-    std::uint32_t first_slot = 0;  // among all slots of the rank
+  };
+  static constexpr std::size_t kBlock = PairHistories::kBucket;
+  static constexpr std::size_t kChunk = SweepPlan::kChunk;
+  static constexpr std::size_t kChunksOfBlock = kBlock / kChunk;
+  // What a thread works with.
+  struct alignas(64) Desk {
+    explicit Desk(std::size_t history_width) : slots(history_width) {}
+    PairSlots slots;            // of a block while it is made
+    LineVector<double> forces;  // of the chunk that is being added up
+    LineVector<double> moments;
+    double largest = 0.0;
   };
 
   std::size_t last_of(std::size_t block) const;
+  std::pair<std::ptrdiff_t, std::ptrdiff_t> grains_of(std::size_t share) const;
   const double* kept(const std::vector<Particle>& particles, std::size_t i, std::size_t j) const;
+  void start_plan();
+  void list_pairs(const PairSearch& search, std::size_t block,
+                  std::vector<std::uint32_t>& partners);
   void mark_fast(const std::vector<Particle>& particles);
   bool needs_slot(const std::vector<Particle>& particles, std::size_t i, std::size_t j) const;
   template <class History>
-  void make_slots(const std::vector<Particle>& particles, std::size_t block, const History& of);
+  void make_slots(const std::vector<Particle>& particles, std::size_t block, PairSlots& scratch,
+                  const History& of);
   void refresh(const std::vector<Particle>& particles);
-  void order_sides(const std::vector<Particle>& particles);
+  void refresh(const std::vector<Particle>& particles, std::size_t block, PairSlots& scratch);
+  void plan_sweep(const std::vector<Particle>& particles);
+  template <class Visit>
+  void each_side(std::size_t share, const Visit& visit) const;
+  void order_sides(const std::vector<Particle>& particles, std::size_t share, std::uint32_t begin);
+  void order_by_count(std::size_t chunk);
 
   template <class Law, class Rolling>
   double sweep(const Law& law, const Rolling& rolling, const std::vector<Particle>& particles,
                double time_step, const Finish& finish);
-  void add_up(std::size_t first, std::size_t last);
+  template <class Law, class Rolling>
+  void evaluate(const Law& law, const Rolling& rolling, const double* grains, std::size_t chunk,
+                double time_step, Pack& largest);
+  void hand_over(std::size_t share, std::size_t chunk, const Finish& finish);
+  void add_up(std::size_t first, std::size_t last, double* forces, double* moments) const;
 
   ContactLaw law_;
   RollingLaw rolling_;
+  Threads threads_;
   std::size_t owned_ = 0;
   double skin_ = 0.0;
   std::vector<Block> blocks_;
   PairHistories kept_;
-  PairSlots scratch_;
+  SweepPlan plan_;
+  std::vector<Desk> desks_;
   std::vector<std::uint8_t> is_fast_;
   std::vector<std::uint32_t> side_start_;  // of each owned grain's slots by partner id
-  std::vector<std::uint32_t> sides_;       // twice the slot, + 1 where the grain has the higher id
+  std::vector<std::uint32_t> sides_;       // twice the result's place, + 1 under the higher id
   std::vector<std::uint8_t> by_count_;     // grains of each chunk by their number of slots
   double gap_ = 0.0;                       // slow pairs closer than this have slots [m]
   double travel_ = 0.0;                    // bound of a slow grain's way since then [m]
   double slow_speed_ = 0.0;
   double fast_speed_ = 0.0;  // from here on a grain is fast
   double time_step_ = 0.0;
-  // What each slot does in this step, kept only until both its grains have added it up.
-  LineVector<double> results_;
-  std::uint32_t result_mask_ = 0;
-  LineVector<double> forces_;  // of the grains being added up
-  LineVector<double> moments_;
+  LineVector<double> results_;  // what each slot does in this step, where the plan says
 };
 
 template <class Visit>

@@ -15,6 +15,12 @@ namespace {
 
 constexpr double kSphereInertia = 0.4;  // of a homogeneous sphere, over m r^2
 
+void add_to(double* sum, const Vec3& term) {
+  sum[0] += term.x;
+  sum[1] += term.y;
+  sum[2] += term.z;
+}
+
 Decomposition first_cuts(const Communicator& ranks, const WorldSettings& settings) {
   const Vec3 low = settings.low;
   const Vec3 high{settings.high.x, settings.high.y,
@@ -36,10 +42,11 @@ Decomposition first_cuts(const Communicator& ranks, const WorldSettings& setting
 World::World(const Communicator& ranks, const WorldSettings& settings)
     : ranks_(ranks),
       settings_(settings),
+      threads_(settings.threads),
       boxes_(first_cuts(ranks, settings)),
       halo_(ranks),
       pairs_(make_contact_law(settings.law, settings.grain, settings.grain, settings.grain_grain),
-             make_rolling_law(settings.rolling, settings.grain_grain)) {
+             make_rolling_law(settings.rolling, settings.grain_grain), threads_) {
   GROUSER_CHECK(settings.time_step > 0.0 && settings.largest_radius > 0.0 && settings.skin > 0.0);
   neighbours_ = boxes_.neighbours(ranks.rank(), 2.0 * settings.largest_radius + settings.skin);
   rounding_ = (norm(settings.low) + norm(settings.high)) * std::numeric_limits<float>::epsilon();
@@ -64,7 +71,7 @@ std::size_t World::add_body(const std::string& name, Mesh mesh, const Solid& sol
   body.turns = turns;
   bodies_.push_back(std::move(body));
   body_contacts_.emplace_back(make_contact_law(settings_.law, settings_.grain, solid, surface),
-                              make_rolling_law(settings_.rolling, surface));
+                              make_rolling_law(settings_.rolling, surface), threads_);
   loads_.emplace_back();
   return bodies_.size() - 1;
 }
@@ -115,13 +122,13 @@ World::StepResult World::step(double request) {
     totals.sums.insert(totals.sums.end(), {load.force_x, load.force_y, load.force_z,
                                            load.force_moment_y, load.couple_y});
   }
+  std::vector<Motion> motions(threads_.count());
+  overlap = std::max(
+      overlap, pairs_.sweep(particles_, settings_.time_step, [&](const PairContacts::Ready& ready) {
+        move(ready, motions[ready.share]);
+      }));
   Motion motion;
-  motion.next_push.assign(bodies_.size(), 0);
-  overlap = std::max(overlap, pairs_.sweep(particles_, settings_.time_step,
-                                           [&](std::size_t first, std::size_t last,
-                                               const double* forces, const double* moments) {
-                                             move(first, last, forces, moments, motion);
-                                           }));
+  for (const Motion& one : motions) motion.add(one);
   totals.sums.emplace_back().add(std::isfinite(motion.sum) ? motion.sum : 0.0);
   totals.maxima = {std::sqrt(motion.fastest2), std::sqrt(motion.slow2), overlap,
                    motion.is_lost ? 1.0 : 0.0, request};
@@ -151,23 +158,22 @@ World::StepResult World::step(double request) {
   return result;
 }
 
-void World::move(std::size_t first, std::size_t last, const double* forces, const double* moments,
-                 Motion& motion) {
+void World::move(const PairContacts::Ready& ready, Motion& motion) {
+  for (const BodyContacts& contacts : body_contacts_)
+    contacts.each_push(ready.first, ready.last, [&](const BodyContacts::Push& push) {
+      const std::size_t at = 4 * (push.particle - ready.first);
+      add_to(ready.forces + at, push.force);
+      add_to(ready.moments + at, push.moment);
+    });
   const double dt = settings_.time_step;
   const Vec3 low = settings_.low;
   const Vec3 high = settings_.high;
-  for (std::size_t i = first; i < last; ++i, forces += 4, moments += 4) {
+  const double* forces = ready.forces;
+  const double* moments = ready.moments;
+  for (std::size_t i = ready.first; i < ready.last; ++i, forces += 4, moments += 4) {
     Particle& p = particles_[i];
-    Vec3 force{forces[0], forces[1], forces[2]};
-    Vec3 moment{moments[0], moments[1], moments[2]};
-    for (std::size_t b = 0; b < bodies_.size(); ++b) {
-      const auto& pushes = body_contacts_[b].pushes();
-      for (std::size_t& at = motion.next_push[b]; at < pushes.size() && pushes[at].particle == i;
-           ++at) {
-        force += pushes[at].force;
-        moment += pushes[at].moment;
-      }
-    }
+    const Vec3 force{forces[0], forces[1], forces[2]};
+    const Vec3 moment{moments[0], moments[1], moments[2]};
     Vec3 gain = (dt / p.mass) * force;
     gain.z -= dt * settings_.gravity;
     p.velocity += gain;
@@ -183,6 +189,14 @@ void World::move(std::size_t first, std::size_t last, const double* forces, cons
     if (!std::isfinite(moment.x + moment.y + moment.z)) motion.fastest2 = NAN;
     if (speed2 > motion.slow2 && !pairs_.is_fast(i)) motion.slow2 = speed2;
   }
+}
+
+// A NaN takes over and stays.
+void World::Motion::add(const Motion& other) {
+  if (!(other.fastest2 <= fastest2) && !std::isnan(fastest2)) fastest2 = other.fastest2;
+  slow2 = std::max(slow2, other.slow2);
+  is_lost |= other.is_lost;
+  sum += other.sum;
 }
 
 double World::displacement() const {

@@ -29,6 +29,7 @@ struct WorldSettings {
   double top = 0.0;
   /// Space is cut anew when the slowest rank takes this many times the mean; infinite = never
   double uneven = 1.05;
+  int threads = 1;  ///< of this rank
   std::string law = "hertz_mindlin";
   std::string rolling = "none";
   Solid grain;
@@ -42,7 +43,7 @@ enum class Fault { kNone = 0, kLostParticle = 1, kNotANumber = 2 };
 ///
 /// Leapfrog: velocities live half a step behind positions; damping forces use them as they are
 /// (first order in the time step, the rest second order). The trajectory is the same bit for bit
-/// on any number of ranks, for any skin and across save_state / load_state at any step.
+/// on any number of ranks and threads, for any skin and across save_state / load_state at any step.
 class World : public Stateful {
  public:
   /// @throws ConfigError when there are more ranks than most_ranks(). Local.
@@ -123,13 +124,13 @@ class World : public Stateful {
     float z;
     Vec3 position() const { return {x, y, z}; }
   };
-  // What is found out while grains move.
-  struct Motion {
-    double fastest2 = 0.0;               // largest squared speed
-    double slow2 = 0.0;                  // of those that are not fast
-    bool is_lost = false;                // a grain has left the region, or is nowhere
-    double sum = 0.0;                    // of |vx| + |vy| + |vz|
-    std::vector<std::size_t> next_push;  // of each body
+  // What a thread finds out while it moves grains; a cache line of its own.
+  struct alignas(64) Motion {
+    double fastest2 = 0.0;  // largest squared speed
+    double slow2 = 0.0;     // of those that are not fast
+    bool is_lost = false;   // a grain has left the region, or is nowhere
+    double sum = 0.0;       // of |vx| + |vy| + |vz|
+    void add(const Motion& other);
   };
 
   void rebuild();
@@ -142,8 +143,7 @@ class World : public Stateful {
   std::vector<std::uint32_t> numbers_by_cell(const std::vector<bool>& leaves,
                                              const std::vector<Arrival>& arrivals) const;
   void put_in_order(std::vector<std::uint32_t> number);
-  void move(std::size_t first, std::size_t last, const double* forces, const double* moments,
-            Motion& motion);
+  void move(const PairContacts::Ready& ready, Motion& motion);
   double displacement() const;
   std::optional<std::uint32_t> loaded_grain(std::int64_t id) const;
   void load_particles(StateTable rows);
@@ -153,6 +153,7 @@ class World : public Stateful {
 
   Communicator ranks_;
   WorldSettings settings_;
+  Threads threads_;
   Decomposition boxes_;
   std::vector<int> neighbours_;
   Halo halo_;

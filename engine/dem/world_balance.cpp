@@ -31,7 +31,8 @@ std::vector<double> World::costs() const {
   for (std::size_t i = 0; i < owned_; ++i)
     costs[i] = kGrainCost + kPairCost * static_cast<double>(pairs_.slots_of(i));
   for (const BodyContacts& contacts : body_contacts_)
-    for (const BodyContacts::Touch& touch : contacts.touches()) costs[touch.particle] += kBodyCost;
+    contacts.each_touch(
+        0, owned_, [&](std::uint32_t grain, int, const double*) { costs[grain] += kBodyCost; });
   const double sum = std::accumulate(costs.begin(), costs.end(), 0.0);
   for (double& cost : costs) cost *= busy_ / busy_steps_ / sum;
   return costs;

@@ -59,7 +59,6 @@ std::vector<Bytes> World::exchange_leaving(std::vector<bool>& leaves) const {
   pairs.sort();
 
   std::map<int, Bytes> out;
-  std::vector<std::size_t> next(body_contacts_.size(), 0);
   for (std::uint32_t i = 0; i < owned_; ++i) {
     if (!leaves[i]) continue;
     Bytes& to = out[boxes_.owner_of(particles_[i].position)];
@@ -72,19 +71,14 @@ std::vector<Bytes> World::exchange_leaving(std::vector<bool>& leaves) const {
       append_bytes(to, &partner, 1);
       append_bytes(to, values, pairs.width());
     });
-    for (std::size_t b = 0; b < body_contacts_.size(); ++b) {
-      const BodyContacts& contacts = body_contacts_[b];
-      const auto& touches = contacts.touches();
-      while (next[b] < touches.size() && touches[next[b]].particle < i) ++next[b];
-      const std::size_t first = next[b];
-      while (next[b] < touches.size() && touches[next[b]].particle == i) ++next[b];
-      count = static_cast<std::int64_t>(next[b] - first);
+    for (const BodyContacts& contacts : body_contacts_) {
+      count = 0;
+      contacts.each_touch(i, i + 1, [&](std::uint32_t, int, const double*) { ++count; });
       append_bytes(to, &count, 1);
-      for (std::size_t t = first; t < next[b]; ++t) {
-        const std::int64_t facet = touches[t].facet;
+      contacts.each_touch(i, i + 1, [&](std::uint32_t, std::int64_t facet, const double* history) {
         append_bytes(to, &facet, 1);
-        append_bytes(to, contacts.history(t), contacts.history_width());
-      }
+        append_bytes(to, history, contacts.history_width());
+      });
     }
   }
 

@@ -79,15 +79,13 @@ void World::save_state(State& state, const StatePiece& piece) const {
   for (std::size_t b = 0; b < body_contacts_.size(); ++b) {
     const BodyContacts& on_body = body_contacts_[b];
     rows += static_cast<std::int64_t>(on_body.count());
-    for (std::size_t t = 0; t < on_body.count(); ++t) {
-      const BodyContacts::Touch& touch = on_body.touches()[t];
-      const std::int64_t id = particles_[touch.particle].id;
-      if (!piece.has(id, total)) continue;
-      const std::int64_t place = (static_cast<std::int64_t>(b) << kFacetBits) | touch.facet;
+    on_body.each_touch(0, owned_, [&](std::uint32_t grain, int facet, const double* history) {
+      const std::int64_t id = particles_[grain].id;
+      if (!piece.has(id, total)) return;
+      const std::int64_t place = (static_cast<std::int64_t>(b) << kFacetBits) | facet;
       touches.integers.insert(touches.integers.end(), {id, place});
-      touches.reals.insert(touches.reals.end(), on_body.history(t),
-                           on_body.history(t) + on_body.history_width());
-    }
+      touches.reals.insert(touches.reals.end(), history, history + on_body.history_width());
+    });
   }
   touches.all_rows = ranks_.sum(rows);
 

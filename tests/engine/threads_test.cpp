@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "engine/terrain/wheel.hpp"
+#include "tests/engine/small_world.hpp"
+
+namespace grouser {
+namespace {
+
+// Run under mpirun with any number of ranks. Enough grains that several threads of several ranks
+// have chunks of them, and share borders that grains cross.
+constexpr int kGrains = 2500;
+constexpr int kSteps = 1600;
+
+std::uint64_t hash_of(const World& world) {
+  State state;
+  world.save_state(state);
+  return hash_state(world.ranks(), state);
+}
+
+Particle grain(int i, std::uint64_t seed) {
+  const auto item = static_cast<std::uint64_t>(i);
+  const auto draw = [&](std::uint64_t stream) { return random_unit(seed, item, stream); };
+  const double pitch = 0.1 / 24.0;
+  const double radius = 1e-3 + 1e-3 * draw(0);
+  const double free = pitch - 2.0 * radius;
+  const auto at = [&](int slot, std::uint64_t stream) {
+    return slot * pitch + radius + free * draw(stream);
+  };
+  Particle p = sphere(i, radius, {at(i % 24, 1), at(i / 24 % 24, 2), at(i / 576, 3)});
+  p.position.z += i / 576 < 2 ? 0.0 : 0.03;
+  p.velocity = {draw(4) - 0.5, draw(5) - 0.5, i / 576 < 2 ? -0.2 : -2.0};
+  return p;
+}
+
+// Grains that rain on others and on a drum that is driven by what they do to it.
+World rain(const Communicator& ranks, int threads, double skin, std::uint64_t seed) {
+  WorldSettings settings = small_settings();
+  settings.largest_radius = 2e-3;
+  settings.rolling = "elastic_plastic";
+  settings.skin = skin;
+  settings.time_step = 1e-5;
+  settings.threads = threads;
+  World world(ranks, settings);
+  add_box(world, {0.5, 0.4, 0.05});
+  WheelCase drum;
+  drum.diameter = 0.03;
+  drum.width = 0.04;
+  drum.facets = 36;
+  const std::size_t wheel =
+      world.add_body("drum", wheel_mesh(drum), kTestSolid, {0.5, 0.6, 0.1}, true);
+  world.body(wheel).motion.position = {0.05, 0.05, 0.026};
+  world.body(wheel).motion.spin = 20.0;
+  for (std::int64_t i = first_key(kGrains, ranks.size(), ranks.rank());
+       i < first_key(kGrains, ranks.size(), ranks.rank() + 1); ++i)
+    world.add_particle(grain(static_cast<int>(i), seed));
+  return world;
+}
+
+void run(World& world, int steps) {
+  for (int i = 0; i < steps; ++i) {
+    ASSERT_EQ(world.step().fault, Fault::kNone);
+    BodyMotion& motion = world.body(1).motion;
+    motion.spin += world.load(1).moment_y() * world.settings().time_step / 1e-4;
+    motion.velocity.x += world.load(1).force_x.value() * world.settings().time_step / 2.0;
+    motion.position += world.settings().time_step * motion.velocity;
+    motion.angle += world.settings().time_step * motion.spin;
+  }
+}
+
+// The hash of one rank with one thread, told to all.
+std::uint64_t alone_after(int steps, std::uint64_t seed) {
+  World alone = rain(Communicator::alone(), 1, 0.5e-3, seed);
+  if (Communicator().rank() == 0) {
+    run(alone, steps);
+    EXPECT_GT(alone.contacts(), 300);
+    EXPECT_NE(alone.body(1).motion.spin, 20.0);
+  }
+  return static_cast<std::uint64_t>(
+      Communicator().from_first(static_cast<std::int64_t>(hash_of(alone))));
+}
+
+TEST(Threads, TrajectoryIsTheSameBitForBitOnAnyNumberOfThreadsAndRanks) {
+  const std::uint64_t expected = alone_after(kSteps, 21);
+  for (const int threads : {1, 2, 3, 4}) {
+    // Another skin each time: lists are made, and shares cut, at other steps.
+    World world = rain(Communicator(), threads, 0.3e-3 + 0.1e-3 * threads, 21);
+    run(world, kSteps);
+    ASSERT_EQ(hash_of(world), expected) << threads << " threads";
+    EXPECT_GT(world.kinetic_energy(), 0.0);
+  }
+}
+
+TEST(Threads, RestartGoesOnBitForBitWithAnotherNumberOfThreads) {
+  const std::uint64_t expected = alone_after(kSteps, 22);
+  World world = rain(Communicator(), 2, 0.5e-3, 22);
+  int done = 0;
+  int threads = 3;
+  for (const int stop : {1, 333, 1000}) {
+    run(world, stop - done);
+    done = stop;
+    State state;
+    world.save_state(state);
+    World fresh = rain(Communicator(), threads, 0.4e-3, 99);
+    fresh.load_state(state);
+    ASSERT_EQ(hash_of(fresh), hash_of(world)) << "right after loading at step " << stop;
+    world = std::move(fresh);
+    threads = threads % 4 + 1;
+  }
+  run(world, kSteps - done);
+  EXPECT_EQ(hash_of(world), expected);
+}
+
+TEST(Threads, ANanOfAnyThreadIsNoticed) {
+  for (const int which : {0, 700, 1300, kGrains - 1}) {
+    World world = rain(Communicator(), 4, 0.5e-3, 23);
+    State state;
+    world.save_state(state);
+    for (StateTable& table : state)
+      for (std::size_t row = 0; table.name == "particles" && row < table.rows(); ++row)
+        if (table.integers[row * table.integer_width()] == which)
+          table.reals[row * table.real_width() + 3] = std::numeric_limits<double>::quiet_NaN();
+    world.load_state(state);
+    EXPECT_EQ(world.step().fault, Fault::kNotANumber) << "grain " << which;
+  }
+}
+
+}  // namespace
+}  // namespace grouser
