@@ -65,6 +65,18 @@ bool is_size_curve(const std::vector<SizePoint>& curve) {
   return true;
 }
 
+// What placed grains would have as a size curve: neighbour lists and time steps go by it.
+void take_sizes(const PlacedCase& placed, GrainsCase& g) {
+  if (placed.grains.empty()) return;
+  const double smallest = placed.smallest();
+  g.size_curve = {{smallest, 0.0}, {std::max(placed.largest(), smallest * 1.000001), 1.0}};
+}
+
+void describe_placed_grains(FieldVisitor& v, GrainsCase& g) {
+  v.quantity({"density", "density of the solid grain"}, g.density, "kg m-3", Range::positive());
+  describe_solid(v, g.solid);
+}
+
 void describe_grains(FieldVisitor& v, GrainsCase& g) {
   v.quantity({"density", "density of the solid grain"}, g.density, "kg m-3", Range::positive());
   describe_solid(v, g.solid);
@@ -193,11 +205,73 @@ void describe_output(FieldVisitor& v, OutputCase& o) {
   v.quantity({"snapshot_interval",
               "simulated time between VTKHDF snapshots of grains and wheel; 0 = none", kOptional},
              o.snapshot_interval, "s", Range::not_negative());
+  v.optional_group(
+      {"track", "one grain whose motion and forces are written to track.csv", kOptional},
+      o.has_track, [&](FieldVisitor& inner) { describe(inner, o.track); });
 }
 
 double largest_diameter(const GrainsCase& grains) {
   return grains.size_curve.empty() ? 0.0
                                    : grains.size_curve.back().diameter * grains.coarse_graining;
+}
+
+// Whether two placed grains overlap.
+bool any_overlap(const std::vector<PlacedGrain>& placed) {
+  std::vector<PlacedGrain> grains = placed;
+  std::sort(grains.begin(), grains.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+  double largest = 0.0;
+  for (const PlacedGrain& g : grains) largest = std::max(largest, g.diameter);
+  for (std::size_t i = 0; i < grains.size(); ++i)
+    for (std::size_t k = i + 1; k < grains.size() && grains[k].x - grains[i].x < largest; ++k)
+      if (std::hypot(grains[k].x - grains[i].x, grains[k].y - grains[i].y,
+                     grains[k].z - grains[i].z) <
+          0.5 * (grains[i].diameter + grains[k].diameter) * (1.0 - 1e-9))
+        return true;
+  return false;
+}
+
+bool is_in_box(const PlacedGrain& g, const BoxCase& box) {
+  const double r = 0.5 * g.diameter * (1.0 - 1e-9);
+  return g.x >= r && g.x <= box.length - r && g.y >= r && g.y <= box.width - r && g.z >= r &&
+         g.z <= box.depth;
+}
+
+void check_placed(FieldVisitor& v, const Case& c) {
+  if (!c.has_placed) return;
+  const auto& grains = c.placed.grains;
+  v.rule("placed", !c.has_wheel, "does not go with a wheel",
+         "a wheel drives over a bed; leave one of the two out");
+  for (std::size_t i = 0; i < grains.size(); ++i)
+    v.rule("placed.grains", is_in_box(grains[i], c.box),
+           "grain " + std::to_string(i) + " is not inside the box",
+           "keep its surface off the walls and its centre below box.depth");
+  v.rule("placed.grains", !any_overlap(grains), "has grains that overlap", "move them apart");
+  const auto count = static_cast<std::int64_t>(grains.size());
+  for (const ProbeCase& probe : c.probes)
+    v.rule("probes", probe.grain < count, "name a grain that is not there",
+           "grains are numbered from 0 to " + std::to_string(count - 1));
+  v.rule("output.track", !c.output.has_track || c.output.track.grain < count,
+         "names a grain that is not there",
+         "grains are numbered from 0 to " + std::to_string(count - 1));
+}
+
+void check_fluid(FieldVisitor& v, const Case& c) {
+  for (const ProbeCase& probe : c.probes)
+    v.rule("probes", c.has_fluid || probe.along != "reynolds",
+           "go along a Reynolds number, but there is no fluid", "give fluid:, or another variable");
+  if (!c.has_fluid || c.grains.size_curve.empty()) return;
+  const double diameter = c.grains.size_curve.front().diameter * c.grains.coarse_graining;
+  v.rule("fluid.wall",
+         c.fluid.wall.law == "none" || largest_diameter(c.grains) < 0.5 * c.fluid.wall_diameter,
+         "is too near for its law: the largest grain has over half of its diameter",
+         "leave the wall out, or look at units");
+  if (c.fluid.drag.amplitude == 0.0) return;
+  const double time = drag_time(c.fluid, diameter, c.grains.density) / c.fluid.drag.amplitude;
+  const double step = time_step_of(c);
+  v.rule("fluid", step <= 0.5 * time,
+         "drag changes the speed of the smallest grain within " + rounded(time) +
+             " s, too fast for the time step of " + rounded(step) + " s",
+         "give numerics.time_step: " + rounded(0.2 * time) + " s or less; look at units");
 }
 
 }  // namespace
@@ -207,12 +281,23 @@ void describe(FieldVisitor& v, Case& c) {
              Range::positive());
   v.group({"box", "open-topped box that holds the soil"},
           [&](FieldVisitor& inner) { describe_box(inner, c.box); });
-  v.group({"grains", "the soil's grains"},
-          [&](FieldVisitor& inner) { describe_grains(inner, c.grains); });
+  v.optional_group({"placed", "grains placed one by one, without bed and size curve", kOptional},
+                   c.has_placed, [&](FieldVisitor& inner) { describe(inner, c.placed); });
+  v.group({"grains", "the soil's grains"}, [&](FieldVisitor& inner) {
+    c.has_placed ? describe_placed_grains(inner, c.grains) : describe_grains(inner, c.grains);
+  });
+  if (c.has_placed) take_sizes(c.placed, c.grains);
   v.group({"contact", "contact laws and surfaces"},
           [&](FieldVisitor& inner) { describe_contact(inner, c.contact); });
-  v.group({"bed", "preparation of the bed"},
-          [&](FieldVisitor& inner) { describe_bed(inner, c.bed); });
+  if (!c.has_placed)
+    v.group({"bed", "preparation of the bed"},
+            [&](FieldVisitor& inner) { describe_bed(inner, c.bed); });
+  v.optional_group({"fluid", "the fluid around the grains; dry without", kOptional}, c.has_fluid,
+                   [&](FieldVisitor& inner) { describe(inner, c.fluid); });
+  v.list(
+      {"probes", "forces on single grains over time or over their state", kOptional},
+      c.probes.size(), [&](std::size_t count) { c.probes.resize(count); },
+      [&](FieldVisitor& inner, std::size_t i) { describe(inner, c.probes[i]); });
   v.optional_group({"wheel", "the wheel; without it the run only settles a bed", kOptional},
                    c.has_wheel, [&](FieldVisitor& inner) {
                      describe_wheel_shape(inner, c.wheel);
@@ -223,6 +308,8 @@ void describe(FieldVisitor& v, Case& c) {
   v.group({"output", "what is written how often", kOptional},
           [&](FieldVisitor& inner) { describe_output(inner, c.output); });
   describe_time_step(v, c);
+  check_placed(v, c);
+  check_fluid(v, c);
   const double grains = grain_count(c);
   v.rule("grains.size_curve", grains <= kMostGrains,
          "comes to " + rounded(grains) + " grains in the bed",
@@ -234,7 +321,8 @@ void describe(FieldVisitor& v, Case& c) {
              rounded(largest_diameter(c.grains) * 1e3) + " mm");
   v.rule("bed", c.bed.depth <= c.box.depth, "depth is above the box walls",
          "the walls are as high as box.depth");
-  v.rule("bed", c.bed.depth >= largest_diameter(c.grains), "depth is less than one grain",
+  v.rule("bed", c.has_placed || c.bed.depth >= largest_diameter(c.grains),
+         "depth is less than one grain",
          "the largest grain, coarse graining included, is " +
              rounded(largest_diameter(c.grains) * 1e3) + " mm");
   v.rule("wheel", !c.has_wheel || c.wheel.start * c.box.length >= 0.25 * c.wheel.diameter,
@@ -261,6 +349,8 @@ YamlNode write_case(const Case& input) {
 
 Case bed_case(const Case& input) {
   Case bed = input;
+  // Probes of a run with a wheel count from its start, when the bed has long settled.
+  if (input.has_wheel) bed.probes.clear();
   bed.has_wheel = false;
   bed.wheel = WheelCase{};
   bed.contact.grain_wheel = SurfaceCase{};
@@ -268,6 +358,7 @@ Case bed_case(const Case& input) {
 }
 
 double run_duration(const Case& input) {
+  if (input.has_placed) return input.placed.duration;
   if (!input.has_wheel) return 0.0;
   const WheelCase& wheel = input.wheel;
   const double ramp_travel = 0.5 * wheel.ramp_time * wheel.forward_speed;

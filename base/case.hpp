@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "base/fluid_case.hpp"
+#include "base/grain_case.hpp"
 #include "base/schema.hpp"
 
 namespace grouser {
@@ -109,6 +111,8 @@ struct OutputCase {
   double series_interval = 1e-3;      ///< simulated time between rows of the time series [s]
   double checkpoint_interval = 0.05;  ///< simulated time between checkpoints [s]
   double snapshot_interval = 0.0;     ///< simulated time between snapshots; 0 = none [s]
+  bool has_track = false;             ///< one grain is written to track.csv
+  TrackCase track;
 };
 
 struct Case {
@@ -117,8 +121,13 @@ struct Case {
   GrainsCase grains;
   ContactCase contact;
   BedCase bed;
+  bool has_placed = false;  ///< grains are placed one by one; neither bed nor size curve is given
+  PlacedCase placed;
   bool has_wheel = false;  ///< without a wheel the run ends when the bed has settled
   WheelCase wheel;
+  bool has_fluid = false;  ///< dry without
+  FluidCase fluid;
+  std::vector<ProbeCase> probes;  ///< forces on single grains
   NumericsCase numerics;
   OutputCase output;
 };
@@ -136,7 +145,8 @@ YamlNode write_case(const Case& input);
 Case bed_case(const Case& input);
 
 /// Simulated time of a run with a wheel: settling, then the travel with its linear rise of speed
-/// [s]. 0 for a bed, whose length is known only when it has settled. Local.
+/// [s]; of placed grains, their duration. 0 for a bed, whose length is known only when it has
+/// settled. Local.
 double run_duration(const Case& input);
 
 /// What is allowed but seldom meant, at its place in `node`, from which `input` was read without

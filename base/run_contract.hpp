@@ -37,6 +37,7 @@ inline constexpr const char* kStop = "stop";       ///< its existence asks the e
                                                    ///< "signal" in it: the job got a signal
 inline constexpr const char* kProgress = "progress.json";  ///< renewed about once a second
 inline constexpr const char* kSeries = "series.csv";       ///< time series, one row per interval
+inline constexpr const char* kTrack = "track.csv";         ///< motion and forces of one grain
 inline constexpr const char* kSlice = "slice.csv";  ///< grains near the mid-plane, for pictures
 inline constexpr const char* kCheckpoints = "checkpoints";  ///< directory
 inline constexpr const char* kSnapshots = "snapshots";      ///< directory of VTKHDF files

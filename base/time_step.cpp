@@ -31,6 +31,15 @@ double loose_height(const Case& c) {
   return std::ceil(grain_count(c) / (fit(c.box.length) * fit(c.box.width))) * largest;
 }
 
+// Of placed grains that fall freely to the floor.
+double fastest_placed(const Case& c) {
+  double fastest2 = 0.0;
+  for (const PlacedGrain& g : c.placed.grains)
+    fastest2 = std::max(fastest2, g.velocity_x * g.velocity_x + g.velocity_y * g.velocity_y +
+                                      g.velocity_z * g.velocity_z + 2.0 * c.gravity * g.z);
+  return std::sqrt(fastest2);
+}
+
 double rim_speed(const WheelCase& wheel) {
   if (wheel.drive == "rim_speed") return std::abs(wheel.rim_speed);
   if (wheel.drive == "slip") return wheel.forward_speed / (1.0 - wheel.slip);
@@ -72,6 +81,7 @@ double rayleigh_time(const Case& input) {
 double fastest_speed(const Case& input) {
   if (input.has_wheel) return input.wheel.forward_speed + rim_speed(input.wheel);
   if (input.grains.size_curve.empty()) return 0.0;
+  if (input.has_placed) return fastest_placed(input);
   return std::sqrt(2.0 * input.gravity * loose_height(input));
 }
 
@@ -156,7 +166,7 @@ void describe_time_step(FieldVisitor& v, const Case& input) {
            "grains that meet at " + rounded(meeting.speed) + " m/s would overlap by " +
                rounded(meeting.overlap) + " of the smallest radius, so the run would break down",
            one.has_wheel ? "look at the units of speeds, density and young_modulus"
-                         : "the speed is that of free fall through the loose filling; look at the "
+                         : "the speed is that of free fall through the filling; look at the "
                            "units of gravity, box, density and young_modulus");
   }
 }

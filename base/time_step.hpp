@@ -34,8 +34,9 @@ struct Collision {
 /// grains alone. 0 without a size curve. Source: Sheng, Lawrence, Briscoe, Thornton 2004, eq. 5.
 double rayleigh_time(const Case& input);
 
-/// Fastest speed that the case prescribes [m s-1]: of a bed, free fall through its loose filling;
-/// with a wheel, forward speed and rim speed added up. What the soil does beyond is not known here.
+/// Fastest speed that the case prescribes [m s-1]: of a bed, free fall through its loose filling,
+/// of placed grains, free fall to the floor; with a wheel, forward speed and rim speed added up.
+/// What the soil does beyond is not known here.
 double fastest_speed(const Case& input);
 
 /// Shortest collision at `fastest_speed`, of the smallest grains with each other, the box and the

@@ -70,8 +70,9 @@ Run::Run(const Communicator& ranks, const EngineOptions& options, const Case& in
       checkpoints_(ranks, options.run_directory / run_files::kCheckpoints,
                    frozen_case(ranks, options.run_directory)) {
   const double dt = world_.settings().time_step;
-  if (input_.has_wheel) {
-    wheel_ = std::make_unique<Wheel>(input_, world_, kWheelBody);
+  if (OuterForces::are_in(input_)) outer_ = std::make_unique<OuterForces>(input_, world_);
+  if (input_.has_wheel) wheel_ = std::make_unique<Wheel>(input_, world_, kWheelBody);
+  if (input_.has_wheel || input_.has_placed) {
     end_step_ = step_at(run_duration(input_), dt);
   } else {
     settled_energy_ = settled_energy(input_);
@@ -80,6 +81,7 @@ Run::Run(const Communicator& ranks, const EngineOptions& options, const Case& in
   if (options_.until_time)
     until_step_ = std::max<std::int64_t>(1, step_at(*options_.until_time, dt));
   series_steps_ = steps_in(input_.output.series_interval, dt);
+  if (input_.output.has_track) track_steps_ = steps_in(input_.output.track.interval, dt);
   checkpoint_steps_ = steps_in(input_.output.checkpoint_interval, dt);
   if (input_.output.snapshot_interval > 0.0)
     snapshot_steps_ = steps_in(input_.output.snapshot_interval, dt);
@@ -98,8 +100,13 @@ Run::Run(const Communicator& ranks, const EngineOptions& options, const Case& in
   first_step_ = step_;
   reported_step_ = step_;
   particles_ = world_.particle_count();
-  on_first_rank(ranks_,
-                [&] { series_.emplace(options_.run_directory / run_files::kSeries, step_); });
+  check_grains();
+  on_first_rank(ranks_, [&] {
+    series_.emplace(options_.run_directory / run_files::kSeries, kSeriesHeader, step_);
+    // A row of the track is of the beginning of a step: the next one's is not there yet.
+    if (track_steps_ > 0)
+      track_.emplace(options_.run_directory / run_files::kTrack, track_header(), step_ - 1);
+  });
   event("started", newest_);
 }
 
@@ -125,26 +132,49 @@ void Run::begin_from_bed() {
   const auto found = bed.find_newest(bed_key);
   if (!found || !found->settled_bed)
     throw FormatError("no settled bed with key " + bed_key + " in " + options_.bed.string());
-  world_.begin_load();
-  bed.read(*found, [&](const StateTable& rows) { world_.load_rows(rows); });
-  world_.end_load();
+  std::vector<Stateful*> settled{&world_};
+  if (outer_) settled.push_back(outer_.get());
+  for (Stateful* module : settled) module->begin_load();
+  bed.read(*found, [&](const StateTable& rows) {
+    for (Stateful* module : settled) module->load_rows(rows);
+  });
+  for (Stateful* module : settled) module->end_load();
   world_.reset_origins();
   wheel_->place();
   spdlog::info("app bed taken from {} step={}", found->file, found->step);
 }
 
 void Run::resume(const CheckpointManifest& manifest) {
-  std::vector<Stateful*> modules{&world_};
-  if (wheel_) modules.push_back(wheel_.get());
-  for (Stateful* module : modules) module->begin_load();
+  const std::vector<Stateful*> all = modules();
+  for (Stateful* module : all) module->begin_load();
   checkpoints_.read(manifest, [&](const StateTable& rows) {
-    for (Stateful* module : modules) module->load_rows(rows);
+    for (Stateful* module : all) module->load_rows(rows);
     if (rows.name == kOwnTable) max_overlap_ = first_row(ranks_, rows).at(0);
   });
-  for (Stateful* module : modules) module->end_load();
+  for (Stateful* module : all) module->end_load();
   newest_ = manifest;
   step_ = manifest.step;
   spdlog::info("app continues from {} step={} time={} s", newest_.file, step_, time());
+}
+
+std::vector<Stateful*> Run::modules() {
+  std::vector<Stateful*> all{&world_};
+  if (outer_) all.push_back(outer_.get());
+  if (wheel_) all.push_back(wheel_.get());
+  return all;
+}
+
+// How many grains a bed has is known only now.
+void Run::check_grains() const {
+  std::vector<Problem> problems;
+  const auto check = [&](const char* key, std::int64_t grain) {
+    if (grain >= particles_)
+      problems.push_back({"", 0, 0, key, "names grain " + std::to_string(grain),
+                          "there are " + std::to_string(particles_) + ", numbered from 0"});
+  };
+  if (input_.output.has_track) check("output.track.grain", input_.output.track.grain);
+  for (const ProbeCase& probe : input_.probes) check("probes.grain", probe.grain);
+  if (!problems.empty()) throw ConfigError(problems);
 }
 
 double Run::elapsed() const {
@@ -152,14 +182,12 @@ double Run::elapsed() const {
 }
 
 std::string Run::phase() const {
+  if (input_.has_placed) return "moving";
   if (!wheel_) return "settling";
   return wheel_->is_driving(time()) ? "driving" : "wheel_settling";
 }
 
-bool Run::is_done() const {
-  if (!input_.has_wheel) return newest_.settled_bed;
-  return step_ >= end_step_;
-}
+bool Run::is_done() const { return end_step_ > 0 ? step_ >= end_step_ : newest_.settled_bed; }
 
 double Run::request() const {
   if (signal_came) return kSignal;
@@ -191,8 +219,7 @@ Outcome Run::execute() {
   for (;;) {
     double wanted = request();
     if (!report_progress(false)) wanted = kStorage;
-    const World::StepResult result = world_.step(wanted);
-    ++step_;
+    const World::StepResult result = one_step(wanted);
     if (wheel_) wheel_->advance(time(), result.max_overlap);
     max_overlap_ = std::max(max_overlap_, result.max_overlap);
     if (const auto code = after_step(result)) {
@@ -204,6 +231,20 @@ Outcome Run::execute() {
       return outcome(*code);
     }
   }
+}
+
+World::StepResult Run::one_step(double request) {
+  const bool with_track = track_steps_ > 0 && step_ % track_steps_ == 0;
+  if (outer_) outer_->announce(time(), with_track);
+  const World::StepResult result = world_.step(request);
+  if (with_track) add_track_row(step_);
+  ++step_;
+  return result;
+}
+
+void Run::add_track_row(std::int64_t step) {
+  const auto row = outer_->take_row();
+  if (row && track_) track_->add(step, time(), "", track_values(*row));
 }
 
 std::optional<EngineCode> Run::after_step(const World::StepResult& result) {
@@ -239,8 +280,7 @@ std::optional<EngineCode> Run::after_step(const World::StepResult& result) {
 }
 
 std::optional<EngineCode> Run::check_settling() {
-  if (input_.has_wheel || step_ % kSettleCheckSteps != 0 || time() < fall_time_)
-    return std::nullopt;
+  if (end_step_ > 0 || step_ % kSettleCheckSteps != 0 || time() < fall_time_) return std::nullopt;
   const double energy = world_.kinetic_energy() / static_cast<double>(particles_);
   if (energy < settled_energy_) {
     if (!write_checkpoint(true)) return EngineCode::kFenceLost;
@@ -271,6 +311,7 @@ EngineCode Run::end_by_request(double request) {
 State Run::state(const StatePiece& piece) const {
   State state;
   world_.save_state(state, piece);
+  if (outer_) outer_->save_state(state, piece);
   if (wheel_) wheel_->save_state(state, piece);
   StateTable own;
   own.name = kOwnTable;
@@ -297,6 +338,7 @@ bool Run::write_checkpoint(bool settled) {
   on_first_rank(ranks_, [&] {
     owns = owns_fence();
     if (owns) series_->flush();
+    if (owns && track_) track_->flush();
   });
   if (ranks_.from_first(owns ? 1 : 0) == 0) {
     reason_ = "another attempt owns the run";

@@ -9,6 +9,7 @@
 
 #include "base/case.hpp"
 #include "base/run_contract.hpp"
+#include "engine/coupling/outer_forces.hpp"
 #include "engine/dem/world.hpp"
 #include "engine/io/checkpoint.hpp"
 #include "engine/io/series.hpp"
@@ -45,6 +46,8 @@ class Run {
  private:
   void begin();
   void begin_from_bed();
+  void check_grains() const;
+  std::vector<Stateful*> modules();
   void resume(const CheckpointManifest& manifest);
   State state(const StatePiece& piece) const;
   bool owns_fence() const;
@@ -56,7 +59,9 @@ class Run {
   EngineCode end_by_request(double request);
 
   bool write_checkpoint(bool settled);
+  World::StepResult one_step(double request);
   void add_series_row();
+  void add_track_row(std::int64_t step);
   bool report_progress(bool now);  // whether it could be written
   void write_slice();
   void event(const std::string& kind, const CheckpointManifest& manifest);
@@ -72,9 +77,11 @@ class Run {
   std::string key_;
   Clock::time_point started_;
   World world_;
+  std::unique_ptr<OuterForces> outer_;
   std::unique_ptr<Wheel> wheel_;
   CheckpointStore checkpoints_;
   std::optional<SeriesFile> series_;  // rank 0
+  std::optional<SeriesFile> track_;   // rank 0, if the case has one
   CheckpointManifest newest_;
   std::string reason_;
   bool by_signal_ = false;
@@ -84,6 +91,7 @@ class Run {
   std::int64_t end_step_ = 0;    // 0 = not known
   std::int64_t until_step_ = 0;  // 0 = none
   std::int64_t series_steps_ = 1;
+  std::int64_t track_steps_ = 0;  // 0 = none
   std::int64_t checkpoint_steps_ = 1;
   std::int64_t snapshot_steps_ = 0;  // 0 = none
   std::int64_t events_ = 0;

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "base/list_reach.hpp"
 #include "base/size_curve.hpp"
@@ -68,7 +69,28 @@ void log_time_step(const Case& input) {
     spdlog::warn("app {} {}; {}", one.key, one.problem, one.hint);
 }
 
+namespace {
+
+Particle placed(const PlacedGrain& g, std::int64_t id, double density) {
+  Particle p;
+  p.id = id;
+  p.radius = 0.5 * g.diameter;
+  p.mass = density * std::numbers::pi / 6.0 * g.diameter * g.diameter * g.diameter;
+  p.position = {g.x, g.y, g.z};
+  p.velocity = {g.velocity_x, g.velocity_y, g.velocity_z};
+  p.spin = {g.spin_x, g.spin_y, g.spin_z};
+  return p;
+}
+
+}  // namespace
+
 void fill(World& world, const Case& input) {
+  std::int64_t number = 0;
+  for (const PlacedGrain& one : input.placed.grains) {
+    const Particle grain = placed(one, number++, input.grains.density);
+    if (world.owns(grain.position)) world.add_particle(grain);
+  }
+  if (input.has_placed) return;
   const Filling filling(input);
   // Every rank makes all grains and keeps its own: none has to travel, which would need more memory
   // than stepping does.

@@ -18,7 +18,7 @@ World make_world(const Communicator& ranks, const Case& input);
 /// Says the time step, what decided it and what is seldom meant. Local.
 void log_time_step(const Case& input);
 
-/// Fills the world's share of the random loose packing. Local.
+/// Fills the world's share of the random loose packing, or of the placed grains. Local.
 void fill(World& world, const Case& input);
 
 }  // namespace grouser

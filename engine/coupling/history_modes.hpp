@@ -19,7 +19,7 @@ class HistoryModes {
  public:
   static constexpr std::size_t kModes = 25;  ///< the last does not decay
   using Weights = std::array<double, kModes>;
-  using Memory = std::array<Vec3, kModes>;  ///< of one grain [m s-1, last and others m]
+  using Memory = std::array<Vec3, kModes>;  ///< of one grain [m s-1]
 
   explicit HistoryModes(double time_step);
 

@@ -13,8 +13,6 @@
 namespace grouser {
 namespace {
 
-constexpr double kSphereInertia = 0.4;  // of a homogeneous sphere, over m r^2
-
 void add_to(double* sum, const Vec3& term) {
   sum[0] += term.x;
   sum[1] += term.y;
@@ -112,6 +110,8 @@ World::StepResult World::step(double request) {
     near_moved_ = 0.0;
   }
 
+  if (forces_ != nullptr) forces_->begin_step(particles_, owned_);
+
   Communicator::StepTotals totals;
   double overlap = 0.0;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -172,13 +172,12 @@ void World::move(const PairContacts::Ready& ready, Motion& motion) {
   const double* moments = ready.moments;
   for (std::size_t i = ready.first; i < ready.last; ++i, forces += 4, moments += 4) {
     Particle& p = particles_[i];
-    const Vec3 force{forces[0], forces[1], forces[2]};
-    const Vec3 moment{moments[0], moments[1], moments[2]};
-    Vec3 gain = (dt / p.mass) * force;
-    gain.z -= dt * settings_.gravity;
-    p.velocity += gain;
+    const GrainLoad load{{forces[0], forces[1], forces[2]}, {moments[0], moments[1], moments[2]}};
+    const GrainGain gain =
+        forces_ == nullptr ? plain_gain(p, load, dt, settings_.gravity) : forces_->gain(p, load);
+    p.velocity += gain.velocity;
     p.position += dt * p.velocity;
-    p.spin += (dt / (kSphereInertia * p.mass * p.radius * p.radius)) * moment;
+    p.spin += gain.spin;
     const Vec3& at = p.position;
     motion.is_lost |= !((at.x >= low.x) & (at.y >= low.y) & (at.z >= low.z) & (at.x <= high.x) &
                         (at.y <= high.y) & (at.z <= high.z));
@@ -186,7 +185,7 @@ void World::move(const PairContacts::Ready& ready, Motion& motion) {
     motion.sum += std::abs(p.velocity.x) + std::abs(p.velocity.y) + std::abs(p.velocity.z);
     // The comparison is written so that a NaN takes over and stays.
     if (!(speed2 <= motion.fastest2) && !std::isnan(motion.fastest2)) motion.fastest2 = speed2;
-    if (!std::isfinite(moment.x + moment.y + moment.z)) motion.fastest2 = NAN;
+    if (!std::isfinite(p.spin.x + p.spin.y + p.spin.z)) motion.fastest2 = NAN;
     if (speed2 > motion.slow2 && !pairs_.is_fast(i)) motion.slow2 = speed2;
   }
 }

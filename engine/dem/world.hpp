@@ -13,6 +13,7 @@
 #include "engine/core/state_io.hpp"
 #include "engine/dem/body.hpp"
 #include "engine/dem/body_contacts.hpp"
+#include "engine/dem/grain_forces.hpp"
 #include "engine/dem/pair_contacts.hpp"
 
 namespace grouser {
@@ -65,6 +66,10 @@ class World : public Stateful {
   std::size_t bodies() const { return bodies_.size(); }
   Body& body(std::size_t number) { return bodies_[number]; }
   const Body& body(std::size_t number) const { return bodies_[number]; }
+
+  /// Lets `forces` act on grains from the next step on; it must outlive the world's steps. nullptr:
+  /// contacts and gravity alone. The same on every rank. Local.
+  void set_grain_forces(GrainForces* forces) { forces_ = forces; }
 
   /// Changes the surface of grains against each other; contact histories stay. Local.
   void set_grain_surface(const Surface& surface);
@@ -139,7 +144,7 @@ class World : public Stateful {
   std::vector<Bytes> exchange_leaving(std::vector<bool>& leaves) const;
   std::vector<Bytes> deliver(std::map<int, Bytes> out) const;
   std::vector<Arrival> arrivals_in(const std::vector<Bytes>& messages) const;
-  void keep_histories(std::uint32_t grain, ByteReader reader);
+  void keep_histories(std::uint32_t grain, std::int64_t id, ByteReader reader);
   std::vector<std::uint32_t> numbers_by_cell(const std::vector<bool>& leaves,
                                              const std::vector<Arrival>& arrivals) const;
   void put_in_order(std::vector<std::uint32_t> number);
@@ -161,6 +166,7 @@ class World : public Stateful {
   std::vector<Vec3> origins_;
   std::size_t owned_ = 0;
   PairContacts pairs_;
+  GrainForces* forces_ = nullptr;
   std::vector<Body> bodies_;
   std::vector<BodyContacts> body_contacts_;
   std::vector<BodyLoad> loads_;

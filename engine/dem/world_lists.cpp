@@ -24,7 +24,7 @@ void World::rebuild() {
   for (BodyContacts& contacts : body_contacts_) contacts.renumber(number);
   particles_.resize(owned_);
   for (std::size_t a = 0; a < arrivals.size(); ++a) {
-    keep_histories(number[owned_ + a],
+    keep_histories(number[owned_ + a], arrivals[a].particle.id,
                    ByteReader(messages[arrivals[a].message], arrivals[a].histories));
     particles_.push_back(arrivals[a].particle);
     origins_.push_back(arrivals[a].origin);
@@ -80,6 +80,11 @@ std::vector<Bytes> World::exchange_leaving(std::vector<bool>& leaves) const {
         append_bytes(to, history, contacts.history_width());
       });
     }
+    Bytes memory;
+    if (forces_ != nullptr) forces_->give(particles_[i].id, memory);
+    count = static_cast<std::int64_t>(memory.size());
+    append_bytes(to, &count, 1);
+    append_bytes(to, memory.data(), memory.size());
   }
 
   return deliver(std::move(out));
@@ -121,13 +126,16 @@ std::vector<World::Arrival> World::arrivals_in(const std::vector<Bytes>& message
       };
       pass(pairs_.history_width());
       for (const BodyContacts& contacts : body_contacts_) pass(contacts.history_width());
+      std::size_t memory = 0;
+      reader.take(&memory, 1);
+      reader.skip(memory);
     }
   }
   return arrivals;
 }
 
 // Keeps the histories of an arrival, as exchange_leaving has written them.
-void World::keep_histories(std::uint32_t grain, ByteReader reader) {
+void World::keep_histories(std::uint32_t grain, std::int64_t id, ByteReader reader) {
   std::int64_t name = 0;
   std::vector<double> values;
   const auto each = [&](std::size_t width, const auto& keep) {
@@ -143,6 +151,9 @@ void World::keep_histories(std::uint32_t grain, ByteReader reader) {
   for (BodyContacts& contacts : body_contacts_)
     each(contacts.history_width(),
          [&] { contacts.keep(grain, static_cast<int>(name), values.data()); });
+  std::int64_t memory = 0;
+  reader.take(&memory, 1);
+  if (memory > 0) forces_->take(id, reader);
 }
 
 // New numbers of the grains owned till now, kGone for those that leave, then of the arrivals: cell

@@ -7,14 +7,14 @@
 
 #include "base/atomic_file.hpp"
 #include "base/errors.hpp"
-#include "base/run_contract.hpp"
 #include "base/units.hpp"
 
 namespace grouser {
 
-SeriesFile::SeriesFile(const std::filesystem::path& file, std::int64_t step) : file_(file) {
-  const std::string header = std::string(kSeriesHeader) + "\n";
-  std::string kept = header;
+SeriesFile::SeriesFile(const std::filesystem::path& file, const std::string& header,
+                       std::int64_t step)
+    : file_(file) {
+  std::string kept = header + "\n";
   const std::string old = read_file(file).value_or("");
   for (std::size_t from = old.find('\n') + 1; from > 0 && from < old.size();) {
     const std::size_t to = old.find('\n', from);
@@ -30,7 +30,8 @@ SeriesFile::SeriesFile(const std::filesystem::path& file, std::int64_t step) : f
 
 void SeriesFile::add(std::int64_t step, double time, const std::string& phase,
                      const std::vector<double>& values) {
-  rows_ += std::to_string(step) + "," + format_number(time) + "," + phase;
+  rows_ += std::to_string(step) + "," + format_number(time);
+  if (!phase.empty()) rows_ += "," + phase;
   for (const double value : values) {
     rows_ += ",";
     if (!std::isnan(value)) rows_ += format_number(value);

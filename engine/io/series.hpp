@@ -8,15 +8,17 @@
 
 namespace grouser {
 
-/// The run's time series, series.csv. Rows are kept until flush, which the caller does with every
-/// checkpoint, so that the file never lags behind the state a run continues from.
+/// A time series of a run, such as series.csv. Rows are kept until flush, which the caller does
+/// with every checkpoint, so that the file never lags behind the state a run continues from.
 class SeriesFile {
  public:
   /// Opens the series to go on after `step`: later rows, and a torn last row, are cut off.
+  /// @param header columns, the step first, without a line end
   /// @throws StorageError. Local (rank 0).
-  SeriesFile(const std::filesystem::path& file, std::int64_t step);
+  SeriesFile(const std::filesystem::path& file, const std::string& header, std::int64_t step);
 
-  /// Adds a row: the step first, then the other columns of kSeriesHeader. NaN becomes empty.
+  /// Adds a row: step, time, the phase if the header has one, then the other columns. NaN becomes
+  /// empty.
   void add(std::int64_t step, double time, const std::string& phase,
            const std::vector<double>& values);
 

@@ -293,17 +293,17 @@ TEST(Series, ContinuesAsIfItHadNeverBeenCut) {
     return std::string(std::istreambuf_iterator<char>(in), {});
   };
   {
-    SeriesFile straight(directory / "a.csv", 0);
+    SeriesFile straight(directory / "a.csv", "step,time,phase,a,b", 0);
     for (int i = 1; i <= 6; ++i) straight.add(i, 0.1 * i, "driving", {1.0 / i, NAN});
     straight.flush();
   }
   {
-    SeriesFile cut(directory / "b.csv", 0);
+    SeriesFile cut(directory / "b.csv", "step,time,phase,a,b", 0);
     for (int i = 1; i <= 5; ++i) cut.add(i, 0.1 * i, "driving", {1.0 / i, NAN});
     cut.flush();
   }
   std::ofstream(directory / "b.csv", std::ios::app) << "6,0.6,dri";  // torn by a kill
-  SeriesFile resumed(directory / "b.csv", 3);
+  SeriesFile resumed(directory / "b.csv", "step,time,phase,a,b", 3);
   for (int i = 4; i <= 6; ++i) resumed.add(i, 0.1 * i, "driving", {1.0 / i, NAN});
   resumed.flush();
   EXPECT_EQ(text_of(directory / "a.csv"), text_of(directory / "b.csv"));

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/coupling/outer_forces.hpp"
+
+#include <algorithm>
+
+#include "base/errors.hpp"
+
+namespace grouser {
+namespace {
+
+constexpr const char* kTable = "fluid_history";
+constexpr std::size_t kMemoryWidth = 3 * HistoryModes::kModes;
+
+std::string three(const std::string& name, const std::string& unit) {
+  return "," + name + "_x [" + unit + "]," + name + "_y [" + unit + "]," + name + "_z [" + unit +
+         "]";
+}
+
+void push(std::vector<double>& to, const Vec3& v) { to.insert(to.end(), {v.x, v.y, v.z}); }
+
+
+Vec3 along(const std::string& axis, double size) {
+  if (axis == "x") return {size, 0.0, 0.0};
+  if (axis == "y") return {0.0, size, 0.0};
+  return {0.0, 0.0, size};
+}
+
+StateTable history_table() {
+  StateTable table;
+  table.name = kTable;
+  table.real_fields = {{"memory", "m s-1", static_cast<int>(kMemoryWidth)}};
+  return table;
+}
+
+}  // namespace
+
+std::string track_header() {
+  std::string text = "step [1],time [s],x [m],y [m],z [m]" + three("velocity", "m s-1") +
+                     three("acceleration", "m s-2") + three("spin", "rad s-1") +
+                     ",gap [m],reynolds [1],contacts [1]";
+  for (const char* part : kPartNames) text += three(part, "N");
+  return text;
+}
+
+std::vector<double> track_values(const TrackRow& row) {
+  std::vector<double> values;
+  push(values, row.position);
+  push(values, row.velocity);
+  push(values, row.acceleration);
+  push(values, row.spin);
+  values.insert(values.end(), {row.gap, row.reynolds, row.contacts});
+  for (const Vec3& force : row.parts.force) push(values, force);
+  return values;
+}
+
+OuterForces::OuterForces(const Case& input, World& world)
+    : world_(world), walls_{input.box.length, input.box.width}, probes_(input.probes) {
+  if (input.output.has_track) tracked_ = input.output.track.grain;
+  const WorldSettings& settings = world.settings();
+  if (input.has_fluid) fluid_.emplace(input.fluid, walls_, settings.time_step, settings.gravity);
+  world.set_grain_forces(this);
+}
+
+OuterForces::~OuterForces() { world_.set_grain_forces(nullptr); }
+
+bool OuterForces::are_in(const Case& input) {
+  return input.has_fluid || !input.probes.empty() || input.output.has_track;
+}
+
+void OuterForces::announce(double time, bool with_track) {
+  time_ = time;
+  wants_row_ = with_track && tracked_ >= 0;
+  row_.reset();
+}
+
+std::optional<TrackRow> OuterForces::take_row() {
+  if (!wants_row_) return std::nullopt;
+  std::vector<Bytes> out(static_cast<std::size_t>(world_.ranks().size()));
+  if (row_) append_bytes(out[0], &*row_, 1);
+  std::optional<TrackRow> found;
+  for (const Bytes& message : world_.ranks().exchange_all(out))
+    if (!message.empty()) ByteReader(message).take(&found.emplace(), 1);
+  return found;
+}
+
+void OuterForces::begin_step(const std::vector<Particle>& particles, std::size_t owned) {
+  if (!wants_row_) return;
+  const auto last = particles.begin() + static_cast<std::ptrdiff_t>(owned);
+  const auto tracked = std::find_if(particles.begin(), last,
+                                    [&](const Particle& p) { return p.id == tracked_; });
+  if (tracked == last) return;
+  const Vec3 at = tracked->position;
+  const double r = tracked->radius;
+  contacts_ = 0.0;
+  for (const Particle& other : particles)
+    if (other.id != tracked_ && norm(other.position - at) < r + other.radius) ++contacts_;
+  for (const double distance : {at.x, walls_.length - at.x, at.y, walls_.width - at.y, at.z})
+    if (distance < r) ++contacts_;
+}
+
+Vec3 OuterForces::probe_force(const Particle& p) const {
+  Vec3 force;
+  for (const ProbeCase& probe : probes_) {
+    if (probe.grain != p.id) continue;
+    const double value = probe.along == "time"    ? time_
+                         : probe.along == "gap"   ? p.position.z - p.radius
+                         : probe.along == "speed" ? norm(p.velocity)
+                                                  : fluid_->reynolds(p, p.velocity);
+    force += along(probe.axis, probe.at(value));
+  }
+  return force;
+}
+
+GrainGain OuterForces::gain(const Particle& p, const GrainLoad& load) {
+  const WorldSettings& settings = world_.settings();
+  const Vec3 probe = probes_.empty() ? Vec3{} : probe_force(p);
+  ForceParts parts;
+  GrainGain gain;
+  if (fluid_) {
+    HistoryModes::Memory* memory = fluid_->has_history() ? &memories_[p.id] : nullptr;
+    gain = fluid_->gain(p, load, probe, memory, parts);
+  } else {
+    gain = plain_gain(p, {load.force + probe, load.moment}, settings.time_step, settings.gravity);
+    parts.force[ForceParts::kContact] = load.force;
+    parts.force[ForceParts::kWeight] = {0.0, 0.0, -p.mass * settings.gravity};
+    parts.force[ForceParts::kProbe] = probe;
+  }
+  if (wants_row_ && p.id == tracked_) record(p, gain, parts);
+  return gain;
+}
+
+void OuterForces::record(const Particle& p, const GrainGain& gain, const ForceParts& parts) {
+  TrackRow& row = row_.emplace();
+  row.position = p.position;
+  row.velocity = p.velocity + 0.5 * gain.velocity;
+  row.acceleration = (1.0 / world_.settings().time_step) * gain.velocity;
+  row.spin = p.spin + 0.5 * gain.spin;
+  row.gap = p.position.z - p.radius;
+  row.reynolds = fluid_ ? fluid_->reynolds(p, row.velocity) : 0.0;
+  row.contacts = contacts_;
+  row.parts = parts;
+}
+
+void OuterForces::give(std::int64_t id, Bytes& to) {
+  const auto found = memories_.find(id);
+  if (found == memories_.end()) return;
+  append_bytes(to, &found->second, 1);
+  memories_.erase(found);
+}
+
+void OuterForces::take(std::int64_t id, ByteReader& from) { from.take(&memories_[id], 1); }
+
+void OuterForces::save_state(State& state, const StatePiece& piece) const {
+  if (!fluid_ || !fluid_->has_history()) return;
+  StateTable table = history_table();
+  table.key_count = world_.particle_count();
+  table.all_rows = world_.ranks().sum(static_cast<std::int64_t>(memories_.size()));
+  for (const auto& [id, memory] : memories_) {
+    if (!piece.has(id, table.key_count)) continue;
+    table.integers.insert(table.integers.end(), {id, 0});
+    for (const Vec3& mode : memory) push(table.reals, mode);
+  }
+  state.push_back(std::move(table));
+}
+
+void OuterForces::load_rows(const StateTable& rows) {
+  if (rows.name != kTable || !fluid_ || !fluid_->has_history()) return;
+  if (rows.real_width() != kMemoryWidth)
+    throw FormatError("the checkpoint's fluid_history has another width");
+  // To where the world keeps the grains it loads, until their owners take them.
+  StateTable sorted = rows;
+  sort_rows(world_.ranks(), sorted);
+  const double* from = sorted.reals.data();
+  for (std::size_t row = 0; row < sorted.rows(); ++row) {
+    HistoryModes::Memory& memory = memories_[sorted.integers[row * sorted.integer_width()]];
+    for (Vec3& mode : memory) {
+      mode = {from[0], from[1], from[2]};
+      from += 3;
+    }
+  }
+}
+
+}  // namespace grouser
