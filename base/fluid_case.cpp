@@ -23,14 +23,14 @@ void describe_lubrication(FieldVisitor& v, FluidCase& f) {
             inner.word({"law", "which law", kOptional}, term.law, {"brenner", "leading"});
             inner.quantity({"amplitude", "0 = off, 1 = as published", kOptional}, term.amplitude,
                            "1", Range::closed(0.0, 1e3));
-            inner.quantity({"smallest_gap", "roughness over the radius; the film is no thinner",
-                            kOptional},
-                           f.smallest_gap, "1", Range::above_up_to(0.0, 1.0));
+            inner.quantity(
+                {"smallest_gap", "roughness over the radius; the film is no thinner", kOptional},
+                f.smallest_gap, "1", Range::above_up_to(0.0, 1.0));
             inner.quantity({"cutoff_gap", "gap over the radius beyond which there is no film force",
                             kOptional},
                            f.cutoff_gap, "1", Range::above_up_to(0.0, 1e3));
-            inner.rule("cutoff_gap", f.cutoff_gap > f.smallest_gap,
-                       "is not above the smallest gap", "the film acts between the two");
+            inner.rule("cutoff_gap", f.cutoff_gap > f.smallest_gap, "is not above the smallest gap",
+                       "the film acts between the two");
           });
 }
 
@@ -41,9 +41,9 @@ void describe_wall(FieldVisitor& v, FluidCase& f) {
                        {"none", "faxen", "haberman_sayre", "di_felice"});
             inner.quantity({"amplitude", "0 = off, 1 = as published", kOptional}, f.wall.amplitude,
                            "1", Range::closed(0.0, 1.0));
-            inner.quantity({"diameter", "inner diameter of the container, or side of a square one",
-                            kOptional},
-                           f.wall_diameter, "m", Range::not_negative());
+            inner.quantity(
+                {"diameter", "inner diameter of the container, or side of a square one", kOptional},
+                f.wall_diameter, "m", Range::not_negative());
             inner.rule("diameter", f.wall.law == "none" || f.wall_diameter > 0.0,
                        "is needed for law " + f.wall.law, "give the container's inner diameter");
           });
@@ -64,9 +64,9 @@ void describe(FieldVisitor& v, FluidCase& f) {
              Range::any());
   v.quantity({"shear_rate", "rise of velocity_x over the height", kOptional}, f.shear_rate, "s-1",
              Range::any());
-  v.quantity({"void_fraction", "of the fluid around every grain, for drag laws of crowds",
-              kOptional},
-             f.void_fraction, "1", Range::closed(0.3, 1.0));
+  v.quantity(
+      {"void_fraction", "of the fluid around every grain, for drag laws of crowds", kOptional},
+      f.void_fraction, "1", Range::closed(0.3, 1.0));
   describe_term(v, {"drag", "drag", kOptional}, f.drag,
                 {"schiller_naumann", "stokes", "dallavalle", "brown_lawler", "abraham", "di_felice",
                  "di_felice_brown_lawler", "gidaspow", "wen_yu", "koch_hill", "beetstra"});

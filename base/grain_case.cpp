@@ -70,8 +70,8 @@ void describe(FieldVisitor& v, ProbeCase& p) {
   v.quantity({"peak", "where it is highest"}, p.peak, unit, Range::any());
   v.quantity({"to", "where it is back at 0"}, p.to, unit, Range::any());
   v.quantity({"force", "at the peak, positive along the axis"}, p.force, "N", Range::any());
-  v.rule("peak", p.from <= p.peak && p.peak <= p.to && p.from < p.to,
-         "is not between from and to", "from <= peak <= to, and from < to");
+  v.rule("peak", p.from <= p.peak && p.peak <= p.to && p.from < p.to, "is not between from and to",
+         "from <= peak <= to, and from < to");
 }
 
 void describe(FieldVisitor& v, TrackCase& t) {

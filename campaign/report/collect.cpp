@@ -104,6 +104,8 @@ class Collector {
       data_.settings = read_report_settings(report, problems);
       data_.recordings =
           read_recordings(report, data_.settings, campaign.source.parent_path(), problems);
+      data_.recorded_series =
+          read_recorded_series(data_.settings, campaign.source.parent_path(), problems);
       for (const Problem& problem : problems) data_.warnings.push_back(problem.text());
     });
   }
@@ -135,6 +137,10 @@ class Collector {
       run.has_case = problems.empty();
       if (run.end_time <= 0.0) run.end_time = run_duration(run.input);
       for (const Problem& problem : problems) data_.warnings.push_back(problem.text());
+    });
+    try_to([&] {
+      const std::filesystem::path file = directory / run_files::kTrack;
+      if (const auto text = read_file(file)) run.track = parse_track(*text, file.string());
     });
     if (run.is_bed) return;
     try_to([&] {
@@ -199,6 +205,8 @@ class Collector {
     add("Seeds of the filling", fmt::format("{}", fmt::join(seeds, ", ")));
     for (const Recording& recording : data_.recordings)
       add("Recording", recording.name + ", " + std::to_string(recording.points.size()) + " values");
+    for (const RecordedSeries& recording : data_.recorded_series)
+      add("Recording", recording.name + ", " + std::to_string(recording.curves.size()) + " series");
   }
 
   std::filesystem::path root_;

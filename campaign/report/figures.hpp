@@ -23,6 +23,20 @@ std::string coefficient_figure(const RunData& run, const RunResult& result);
 /// Sinkage of a run over simulated time, the averaging window shaded.
 std::string sinkage_figure(const RunData& run, const RunResult& result);
 
+/// What of a tracked grain is drawn.
+enum class TrackSignal { kGap, kVelocity };
+
+/// The recorded curves of a signal whose condition is named as one of the run's sweep points.
+std::vector<const RecordedCurve*> curves_of(const ReportData& data, const RunData& run,
+                                            TrackSignal signal);
+
+/// Root mean square of engine minus recording at the recorded times within the run; gap [mm], speed
+/// [mm s-1]; NaN when no time is.
+double rms_difference(const TrackSeries& track, TrackSignal signal, const RecordedCurve& curve);
+
+/// Gap or downward speed of the tracked grain over time, with the recorded points.
+std::string track_figure(const ReportData& data, const RunData& run, TrackSignal signal);
+
 /// Displacement at the upper end of the colours, a round number for all pictures together: few
 /// grains are beyond it. 0 when no run has a picture. [m]
 double displacement_scale(const ReportData& data);

@@ -41,6 +41,7 @@ std::string navigation(const std::string& body) {
                                               {"points", "Means"},
                                               {"pictures", "Pictures"},
                                               {"runs", "Runs"},
+                                              {"tracks", "Tracked grains"},
                                               {"neglected", "Neglected"},
                                               {"recordings", "Recordings"},
                                               {"parameters", "Parameters"},
@@ -59,9 +60,10 @@ std::string report_html(const ReportData& data, const Analysis& analysis) {
   const std::string title = data.title.empty() ? data.name : data.title;
   const std::string body = curves_section(data, analysis) + comparison_section(data, analysis) +
                            points_section(data, analysis) + pictures_section(data, analysis) +
-                           runs_section(data, analysis) + neglected_section(data) +
-                           recordings_section(data) + parameters_section(data) +
-                           ledger_section(data) + provenance_section(data);
+                           runs_section(data, analysis) + tracks_section(data) +
+                           neglected_section(data) + recordings_section(data) +
+                           parameters_section(data) + ledger_section(data) +
+                           provenance_section(data);
   return head(title) + "<body>\n" + heading(data, analysis, title) + navigation(body) + "<main>\n" +
          body + "</main>\n</body>\n</html>\n";
 }

@@ -42,6 +42,7 @@ void check_report(const YamlNode& report, const std::filesystem::path& directory
                   std::vector<Problem>& problems) {
   const ReportSettings settings = read_report_settings(report, problems);
   read_recordings(report, settings, directory, problems);
+  read_recorded_series(settings, directory, problems);
 }
 
 }  // namespace grouser

@@ -9,6 +9,7 @@
 
 #include "base/case.hpp"
 #include "campaign/report/observables.hpp"
+#include "campaign/report/recorded_series.hpp"
 #include "campaign/report/recording.hpp"
 #include "campaign/report/settings.hpp"
 
@@ -43,6 +44,13 @@ struct BedSlice {
   std::vector<std::pair<double, double>> wheel;  ///< outline, x and z [m]
   double box_length = 0.0;                       ///< [m]
   double wall_height = 0.0;                      ///< [m]
+};
+
+/// track.csv of a run: how the tracked grain moved.
+struct TrackSeries {
+  std::vector<double> time;      ///< [s]
+  std::vector<double> gap;       ///< lowest point over the floor [m]
+  std::vector<double> velocity;  ///< upward [m s-1]
 };
 
 /// One attempt of a chunk, as the ledger shows it.
@@ -82,6 +90,7 @@ struct RunData {
   std::string state_hash;
   RunSeries series;
   BedSlice slice;
+  TrackSeries track;  ///< empty when no grain is tracked
   std::vector<AttemptData> attempts;
 };
 
@@ -91,6 +100,7 @@ struct ReportData {
   std::string made_at;  ///< date and time for people
   ReportSettings settings;
   std::vector<Recording> recordings;
+  std::vector<RecordedSeries> recorded_series;
   std::vector<RunData> runs;
   std::vector<std::pair<std::string, std::string>> provenance;  ///< name and value, as shown
   std::vector<std::string> warnings;                            ///< what could not be read

@@ -46,6 +46,20 @@ RunSeries parse_series(const std::string& text, const std::string& source) {
   return series;
 }
 
+TrackSeries parse_track(const std::string& text, const std::string& source) {
+  const CsvTable table = parse_csv(text.substr(0, text.rfind('\n') + 1));
+  TrackSeries track;
+  if (table.header.empty()) return track;
+  const std::vector<std::pair<std::size_t, std::vector<double>*>> columns{
+      {column_of(table, "time [s]", source), &track.time},
+      {column_of(table, "gap [m]", source), &track.gap},
+      {column_of(table, "velocity_z [m s-1]", source), &track.velocity}};
+  for (const std::vector<std::string>& row : table.rows)
+    if (row.size() == table.header.size())
+      for (const auto& [column, values] : columns) values->push_back(number_of(row[column]));
+  return track;
+}
+
 BedSlice parse_slice(const std::string& text, const std::string& source, std::size_t max_grains) {
   const CsvTable table = parse_csv(text.substr(0, text.rfind('\n') + 1));
   BedSlice slice;

@@ -16,4 +16,7 @@ RunSeries parse_series(const std::string& text, const std::string& source);
 /// are left out. Local. @throws FormatError naming `source` when a column is missing.
 BedSlice parse_slice(const std::string& text, const std::string& source, std::size_t max_grains);
 
+/// track.csv of a run. @throws FormatError naming `source` when a column is missing. Local.
+TrackSeries parse_track(const std::string& text, const std::string& source);
+
 }  // namespace grouser

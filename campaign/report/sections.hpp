@@ -17,6 +17,8 @@ std::string points_section(const ReportData& data, const Analysis& analysis);
 std::string pictures_section(const ReportData& data, const Analysis& analysis);
 std::string runs_section(const ReportData& data, const Analysis& analysis);
 
+std::string tracks_section(const ReportData& data);
+
 std::string neglected_section(const ReportData& data);
 std::string recordings_section(const ReportData& data);
 std::string parameters_section(const ReportData& data);

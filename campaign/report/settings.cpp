@@ -74,7 +74,7 @@ std::vector<Recording> read_recordings(const YamlNode& node, const ReportSetting
     const std::filesystem::path folder = directory / settings.recordings[i];
     std::error_code unreadable;
     if (std::filesystem::is_regular_file(folder / "recording.yaml", unreadable)) {
-      recordings.push_back(read_recording(folder, problems));
+      if (!has_recorded_series(folder)) recordings.push_back(read_recording(folder, problems));
       continue;
     }
     const YamlNode& at = path_node(node, i);
@@ -83,6 +83,16 @@ std::vector<Recording> read_recordings(const YamlNode& node, const ReportSetting
          (folder / "recording.yaml").lexically_normal().string() + ": cannot be read",
          "paths count from " + directory.string()});
   }
+  return recordings;
+}
+
+std::vector<RecordedSeries> read_recorded_series(const ReportSettings& settings,
+                                                 const std::filesystem::path& directory,
+                                                 std::vector<Problem>& problems) {
+  std::vector<RecordedSeries> recordings;
+  for (const std::string& path : settings.recordings)
+    if (!path.empty() && has_recorded_series(directory / path))
+      recordings.push_back(read_recorded_series(directory / path, problems));
   return recordings;
 }
 

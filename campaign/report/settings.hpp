@@ -7,6 +7,7 @@
 
 #include "base/schema.hpp"
 #include "campaign/report/observables.hpp"
+#include "campaign/report/recorded_series.hpp"
 #include "campaign/report/recording.hpp"
 
 namespace grouser {
@@ -30,11 +31,16 @@ std::string report_reference();
 /// Reads and checks `report:`; a null node gives the defaults. Problems are appended. Local.
 ReportSettings read_report_settings(const YamlNode& node, std::vector<Problem>& problems);
 
-/// Reads the recordings that `report:` names. One that is not there is a problem at the place of
-/// its name in `node`. @param directory from which relative paths count. Problems are appended.
-/// Local.
+/// Reads the recordings of single values that `report:` names. One that is not there is a problem
+/// at the place of its name in `node`. @param directory from which relative paths count. Problems
+/// are appended. Local.
 std::vector<Recording> read_recordings(const YamlNode& node, const ReportSettings& settings,
                                        const std::filesystem::path& directory,
                                        std::vector<Problem>& problems);
+
+/// Those of them that hold series over time. Problems are appended. Local.
+std::vector<RecordedSeries> read_recorded_series(const ReportSettings& settings,
+                                                 const std::filesystem::path& directory,
+                                                 std::vector<Problem>& problems);
 
 }  // namespace grouser

@@ -128,13 +128,13 @@ GrainGain FluidForces::gain(const Particle& p, const GrainLoad& load, const Vec3
                             HistoryModes::Memory* memory, ForceParts& parts) const {
   const double dt = time_step_;
   const double displaced = fluid_.density * (4.0 / 3.0) * kPi * p.radius * p.radius * p.radius;
-  const double added = input_.added_mass.amplitude * displaced *
-                       std::visit([&](const auto& law) { return law.share(input_.void_fraction); },
-                                  added_mass_);
-  const double local = has_history() ? input_.history.amplitude *
-                                           history_scale(fluid_, 2.0 * p.radius) *
-                                           modes_.local_weight()
-                                     : 0.0;
+  const double added =
+      input_.added_mass.amplitude * displaced *
+      std::visit([&](const auto& law) { return law.share(input_.void_fraction); }, added_mass_);
+  const double local =
+      has_history()
+          ? input_.history.amplitude * history_scale(fluid_, 2.0 * p.radius) * modes_.local_weight()
+          : 0.0;
   const double mass = p.mass + added + local;
   const Vec3 film = films(p);
   const Vec3 fluid = fluid_velocity(p.position);
@@ -145,8 +145,8 @@ GrainGain FluidForces::gain(const Particle& p, const GrainLoad& load, const Vec3
   gain.spin = turn(p, load.moment);
   const Vec3 spin = p.spin + 0.5 * gain.spin;
   Terms now;
-  Vec3 change;       // of the fluid's velocity along the grain's path [m s-2]
-  Vec3 resistance;   // [N s m-1]
+  Vec3 change;      // of the fluid's velocity along the grain's path [m s-2]
+  Vec3 resistance;  // [N s m-1]
   for (int round = 0; round < 2; ++round) {
     const Vec3 middle = p.velocity + 0.5 * gain.velocity;
     now = terms(point(p, middle, spin), memory);

@@ -41,12 +41,12 @@ struct BoxWalls {
 /// The one-way ("submerged") forces of a fluid on a grain: the fluid moves as prescribed, whatever
 /// grains do in it.
 ///
-/// Drag and lubrication are integrated as an exponential over the step, so that no drag is too stiff
-/// to be stable; added mass and the newest half step of the history are part of the inertia, so that
-/// light grains are stable as well. Second order in the time step, where velocity and spin of the
-/// middle of the step are used throughout; spin drag is first order if its law depends on the spin.
-/// Neglected: what grains do to the fluid and so to each other, the fluid's surface, lubrication
-/// between grains and towards the wheel.
+/// Drag and lubrication are integrated as an exponential over the step, so that no drag is too
+/// stiff to be stable; added mass and the newest half step of the history are part of the inertia,
+/// so that light grains are stable as well. Second order in the time step, where velocity and spin
+/// of the middle of the step are used throughout; spin drag is first order if its law depends on
+/// the spin. Neglected: what grains do to the fluid and so to each other, the fluid's surface,
+/// lubrication between grains and towards the wheel.
 class FluidForces {
  public:
   FluidForces(const FluidCase& input, const BoxWalls& walls, double time_step, double gravity);

@@ -18,7 +18,6 @@ std::string three(const std::string& name, const std::string& unit) {
 
 void push(std::vector<double>& to, const Vec3& v) { to.insert(to.end(), {v.x, v.y, v.z}); }
 
-
 Vec3 along(const std::string& axis, double size) {
   if (axis == "x") return {size, 0.0, 0.0};
   if (axis == "y") return {0.0, size, 0.0};
@@ -86,8 +85,8 @@ std::optional<TrackRow> OuterForces::take_row() {
 void OuterForces::begin_step(const std::vector<Particle>& particles, std::size_t owned) {
   if (!wants_row_) return;
   const auto last = particles.begin() + static_cast<std::ptrdiff_t>(owned);
-  const auto tracked = std::find_if(particles.begin(), last,
-                                    [&](const Particle& p) { return p.id == tracked_; });
+  const auto tracked =
+      std::find_if(particles.begin(), last, [&](const Particle& p) { return p.id == tracked_; });
   if (tracked == last) return;
   const Vec3 at = tracked->position;
   const double r = tracked->radius;

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/case.hpp"
-#include "engine/coupling/fluid_forces.hpp"
 #include "engine/core/state_io.hpp"
+#include "engine/coupling/fluid_forces.hpp"
 #include "engine/dem/world.hpp"
 
 namespace grouser {
@@ -46,7 +46,8 @@ class OuterForces : public GrainForces, public Stateful {
   /// Says what time the next step begins at, and whether its motion of the tracked grain is
   /// wanted. Local.
   void announce(double time, bool with_track);
-  /// The row of the step just done on rank 0, nothing elsewhere or when none was wanted. Collective.
+  /// The row of the step just done on rank 0, nothing elsewhere or when none was wanted.
+  /// Collective.
   std::optional<TrackRow> take_row();
 
   void begin_step(const std::vector<Particle>& particles, std::size_t owned) override;

@@ -43,10 +43,12 @@ class GrainForces {
   virtual void begin_step(const std::vector<Particle>& particles, std::size_t owned) = 0;
 
   /// The gain of an owned grain in this step; its position is of the middle of the step, its
-  /// velocity and spin of the beginning. Grains may be asked for in any order, but each once. Local.
+  /// velocity and spin of the beginning. Grains may be asked for in any order, but each once.
+  /// Local.
   virtual GrainGain gain(const Particle& particle, const GrainLoad& load) = 0;
 
-  /// Appends what it remembers of a grain that goes to another rank, and takes it back there. Local.
+  /// Appends what it remembers of a grain that goes to another rank, and takes it back there.
+  /// Local.
   virtual void give(std::int64_t id, Bytes& to) = 0;
   virtual void take(std::int64_t id, ByteReader& from) = 0;
 };

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "base/fluid_case.hpp"
 #include "engine/coupling/history_modes.hpp"
 #include "engine/coupling/laws/table.hpp"
 
@@ -146,6 +147,39 @@ TEST(DragLaws, MeetNewtonsLimit) {
   EXPECT_NEAR(DallaValleDrag::factor(1e5, 1.0) * 24.0 / 1e5, 0.4163, 1e-4);
   EXPECT_NEAR(BrownLawlerDrag::factor(1e5, 1.0) * 24.0 / 1e5,
               0.407 / 1.0871 + 3.6 * std::pow(1e5, -0.319), 1e-3);
+}
+
+// Names of a list's laws.
+template <class... Law>
+std::set<std::string> names_of(const std::variant<Law...>&) {
+  return {Law::kName...};
+}
+
+// Words that the case takes for the law of a term: what it says when it gets another.
+std::set<std::string> words_of(const std::string& term) {
+  std::vector<Problem> problems;
+  FluidCase fluid;
+  read_fields(
+      parse_yaml("density: 1 kg m-3\nviscosity: 1 Pa s\n" + term + ": {law: nonesuch}\n", "x"),
+      [&](FieldVisitor& visitor) { describe(visitor, fluid); }, problems);
+  if (problems.size() != 1) return {};
+  std::string text = problems[0].hint;
+  text = text.substr(text.find("allowed: ") + 9) + ", ";
+  std::set<std::string> words;
+  for (std::size_t at = 0; at < text.size(); at = text.find(", ", at) + 2)
+    words.insert(text.substr(at, text.find(", ", at) - at));
+  return words;
+}
+
+TEST(FluidCase, NamesTheLawsOfTheListsAndNoOthers) {
+  EXPECT_EQ(words_of("drag"), names_of(DragLaw()));
+  EXPECT_EQ(words_of("added_mass"), names_of(AddedMassLaw()));
+  EXPECT_EQ(words_of("history"), names_of(HistoryLaw()));
+  EXPECT_EQ(words_of("shear_lift"), names_of(ShearLiftLaw()));
+  EXPECT_EQ(words_of("spin_lift"), names_of(SpinLiftLaw()));
+  EXPECT_EQ(words_of("spin_drag"), names_of(SpinDragLaw()));
+  EXPECT_EQ(words_of("lubrication"), names_of(LubricationLaw()));
+  EXPECT_EQ(words_of("wall"), names_of(WallLaw()));
 }
 
 template <class Law>
