@@ -5,7 +5,8 @@
 # Scenarios: chunks (ranks 1, 2, 4 x chunks 1, 3, 7), kills (engine killed in mid-chunk, all of it and
 # one rank alone), manager (killed in mid-submission, and the engines with it), full_disk, truncated,
 # broken (overlap, NaN, lost grain), signals (SIGTERM and SIGUSR1, to ranks and to mpirun),
-# snapshots (VTK's own reader opens them).
+# snapshots (VTK's own reader opens them), fluid (placed grains with a history and a track, cut and
+# moved between ranks).
 set -euo pipefail
 reader=$(realpath -- "$(dirname -- "${BASH_SOURCE[0]}")/read_vtkhdf.py")
 scenario=$1 grouser=$(realpath -- "$2") engine=$(realpath -- "$3")
@@ -425,6 +426,53 @@ manager() {
       [ "$(final_hashes "$root")" = "$expected" ] || fail "the disturbed campaign has other bits"
       echo "same bits: campaign on $ranks ranks in $count chunks, managers killed ${places[*]}"
     done
+  done
+}
+
+fluid_run() {  # DIR
+  mkdir -p "$1"
+  cat >"$1/case.yaml" <<'YAML'
+box: {length: 6 cm, width: 6 cm, depth: 6 cm, solid: {young_modulus: 5 MPa}}
+placed:
+  duration: 0.15 s
+  grains:
+    - {diameter: 8 mm, x: 15 mm, y: 20 mm, z: 8 mm, velocity_x: 0.4 m/s, velocity_z: -0.3 m/s}
+    - {diameter: 8 mm, x: 45 mm, y: 20 mm, z: 12 mm, velocity_x: -0.5 m/s, spin_y: 40 rad/s}
+    - {diameter: 6 mm, x: 30 mm, y: 45 mm, z: 30 mm}
+grains: {density: 2500 kg/m3, solid: {young_modulus: 5 MPa}}
+contact:
+  grain_grain: {restitution: 0.8, friction: 0.3}
+  grain_box: {restitution: 0.8, friction: 0.3}
+fluid:
+  density: 950 kg/m3
+  viscosity: 20 mPa s
+  velocity_x: 0.05 m/s
+  shear_rate: 2 s-1
+  added_mass: {amplitude: 1}
+  history: {law: mei_adrian, amplitude: 1}
+  shear_lift: {amplitude: 1}
+  spin_lift: {amplitude: 1}
+  spin_drag: {amplitude: 1}
+  lubrication: {amplitude: 1}
+probes: [{grain: 1, axis: y, along: gap, from: 0 mm, peak: 5 mm, to: 20 mm, force: 1 mN}]
+output: {series_interval: 1 ms, checkpoint_interval: 20 ms, track: {grain: 1, interval: 1 ms}}
+YAML
+}
+
+fluid() {
+  local ranks
+  fluid_run straight
+  launch 1 straight
+  [ "$code" = 0 ] || fail "undisturbed run ended with $code: $(tail -n 3 straight/log)"
+  expected=$(hash_of)
+  [ "$(wc -l <straight/track.csv)" -ge 140 ] || fail "the track has $(wc -l <straight/track.csv) lines"
+  for ranks in 1 2 4; do
+    fluid_run "cut-$ranks"
+    launch "$ranks" "cut-$ranks" --until-time 0.0613
+    [ "$code" = 10 ] || fail "the first chunk ended with $code: $(tail -n 3 "cut-$ranks/log")"
+    launch $((3 - ranks % 3)) "cut-$ranks" --restart required
+    expect_same "cut-$ranks" "fluid cut on $ranks ranks, continued on $((3 - ranks % 3))"
+    cmp "cut-$ranks/track.csv" straight/track.csv || fail "the track differs"
   done
 }
 
