@@ -17,7 +17,7 @@ void describe_term(FieldVisitor& v, const Field& field, TermCase& term,
 }
 
 void describe_lubrication(FieldVisitor& v, FluidCase& f) {
-  v.group({"lubrication", "film between a grain and walls of the box or other grains", kOptional},
+  v.group({"lubrication", "film between a grain and the walls of the box", kOptional},
           [&](FieldVisitor& inner) {
             TermCase& term = f.lubrication;
             inner.word({"law", "which law", kOptional}, term.law, {"brenner", "leading"});

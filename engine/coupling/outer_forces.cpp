@@ -83,6 +83,9 @@ std::optional<TrackRow> OuterForces::take_row() {
 }
 
 void OuterForces::begin_step(const std::vector<Particle>& particles, std::size_t owned) {
+  // Here and not where it is asked for: threads ask.
+  if (fluid_ && fluid_->has_history() && memories_.size() < owned)
+    for (std::size_t i = 0; i < owned; ++i) memories_.try_emplace(particles[i].id);
   if (!wants_row_) return;
   const auto last = particles.begin() + static_cast<std::ptrdiff_t>(owned);
   const auto tracked =
@@ -116,7 +119,7 @@ GrainGain OuterForces::gain(const Particle& p, const GrainLoad& load) {
   ForceParts parts;
   GrainGain gain;
   if (fluid_) {
-    HistoryModes::Memory* memory = fluid_->has_history() ? &memories_[p.id] : nullptr;
+    HistoryModes::Memory* memory = fluid_->has_history() ? &memories_.at(p.id) : nullptr;
     gain = fluid_->gain(p, load, probe, memory, parts);
   } else {
     gain = plain_gain(p, {load.force + probe, load.moment}, settings.time_step, settings.gravity);

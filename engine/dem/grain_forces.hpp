@@ -43,8 +43,7 @@ class GrainForces {
   virtual void begin_step(const std::vector<Particle>& particles, std::size_t owned) = 0;
 
   /// The gain of an owned grain in this step; its position is of the middle of the step, its
-  /// velocity and spin of the beginning. Grains may be asked for in any order, but each once.
-  /// Local.
+  /// velocity and spin of the beginning. Threads ask at once, for each grain one of them. Local.
   virtual GrainGain gain(const Particle& particle, const GrainLoad& load) = 0;
 
   /// Appends what it remembers of a grain that goes to another rank, and takes it back there.

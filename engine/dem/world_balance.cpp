@@ -39,7 +39,9 @@ std::vector<double> World::costs() const {
 }
 
 void World::cut_if_uneven() {
-  if (ranks_.size() == 1) return;
+  // Fewer grains than ranks cannot be shared out, and cuts through none of them are not the same
+  // everywhere.
+  if (ranks_.size() == 1 || count_ < ranks_.size()) return;
   bool is_uneven = is_loaded_;
   if (!is_loaded_) {
     if (busy_steps_ < kLeastSteps) return;
