@@ -106,8 +106,9 @@ void launch(const Options& options, const Plan& plan, const std::filesystem::pat
   const LaunchReport report = compare_plan(plan, source, root, store);
   refuse_silent_change(report, options);
   launch_plan(plan, source, engine, root, clock.now(), store);
-  const auto beds = std::count_if(plan.runs.begin(), plan.runs.end(),
-                                  [](const PlannedRun& run) { return run.is_bed; });
+  const auto beds = std::count_if(plan.runs.begin(), plan.runs.end(), [](const PlannedRun& run) {
+    return run.is_bed && !run.input.has_placed;
+  });
   std::cout << "campaign " << plan.name << ": " << plan.runs.size() - static_cast<std::size_t>(beds)
             << " runs on " << beds << " beds, scheduler " << plan.settings.scheduler << ", in "
             << root.string() << "\n";

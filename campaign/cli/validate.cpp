@@ -20,8 +20,9 @@ void add_validate(CLI::App& app, int& code) {
   verb->add_option("--site", options->site, "site file with scheduler and resources");
   verb->callback([options, &code] {
     const Plan plan = checked_plan(options->file, options->site);
-    const auto beds = std::count_if(plan.runs.begin(), plan.runs.end(),
-                                    [](const PlannedRun& run) { return run.is_bed; });
+    const auto beds = std::count_if(plan.runs.begin(), plan.runs.end(), [](const PlannedRun& run) {
+      return run.is_bed && !run.input.has_placed;
+    });
     std::cout << options->file << ": good; " << plan.runs.size() - static_cast<std::size_t>(beds)
               << " runs on " << beds << " beds\n";
     code = exit_codes::kOk;
