@@ -26,13 +26,14 @@ Case flow(double amplitude) {
 // Grains that settle while the flow carries them through the columns of all ranks.
 class Sediment {
  public:
-  Sediment(const Communicator& ranks, const Case* input) : world_(ranks, settings()) {
+  Sediment(const Communicator& ranks, const Case* input, int threads = 1)
+      : world_(ranks, settings(threads)) {
     add_box(world_, {0.5, 0.4, 0.05});
     if (input != nullptr) outer_ = std::make_unique<OuterForces>(*input, world_);
   }
 
-  void fill() {
-    const std::vector<Particle> grains = loose_column(81, 3);
+  void fill(int count = 81) {
+    const std::vector<Particle> grains = loose_column(count, 3);
     for (const Particle& grain : grains)
       if (world_.owns(grain.position)) world_.add_particle(grain);
   }
@@ -55,8 +56,9 @@ class Sediment {
   }
 
  private:
-  static WorldSettings settings() {
+  static WorldSettings settings(int threads) {
     WorldSettings settings = small_settings();
+    settings.threads = threads;
     settings.time_step = 2e-5;
     return settings;
   }
@@ -78,6 +80,17 @@ TEST(FluidInvariance, TrajectoryIsTheSameBitForBitOnAnyNumberOfRanks) {
         Communicator().from_first(static_cast<std::int64_t>(alone.hash())));
     ASSERT_EQ(together.hash(), expected) << "after leg " << leg;
   }
+}
+
+TEST(FluidInvariance, TrajectoryIsTheSameBitForBitOnAnyNumberOfThreads) {
+  const Case input = flow(1.0);
+  Sediment one(Communicator(), &input, 1);
+  Sediment three(Communicator(), &input, 3);
+  for (Sediment* sediment : {&one, &three}) {
+    sediment->fill(600);  // so many that every thread has some
+    sediment->run(60);
+  }
+  EXPECT_EQ(three.hash(), one.hash());
 }
 
 TEST(FluidInvariance, HistoriesSurviveARestartBitForBit) {
