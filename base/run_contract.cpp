@@ -87,6 +87,7 @@ std::string to_json(const Outcome& o) {
               {"wall_seconds", o.wall_seconds},
               {"compute_seconds", o.compute_seconds},
               {"checkpoint_seconds", o.checkpoint_seconds},
+              {"slowest_checkpoint_seconds", o.slowest_checkpoint_seconds},
               {"ranks", o.ranks}}
              .dump(2) +
          "\n";
@@ -108,6 +109,7 @@ Outcome outcome_from_json(const std::string& text, const std::string& source) {
     j.at("wall_seconds").get_to(o.wall_seconds);
     j.at("compute_seconds").get_to(o.compute_seconds);
     j.at("checkpoint_seconds").get_to(o.checkpoint_seconds);
+    o.slowest_checkpoint_seconds = j.value("slowest_checkpoint_seconds", 0.0);
     j.at("ranks").get_to(o.ranks);
   });
 }

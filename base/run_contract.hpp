@@ -63,6 +63,7 @@ struct Outcome {
   double wall_seconds = 0.0;     ///< whole attempt [s]
   double compute_seconds = 0.0;  ///< time stepping alone [s]
   double checkpoint_seconds = 0.0;
+  double slowest_checkpoint_seconds = 0.0;  ///< the longest that one took [s]
   int ranks = 1;
 };
 

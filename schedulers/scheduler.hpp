@@ -42,6 +42,7 @@ enum class JobEnd {
   kFailed,
   kKilled,  ///< by a signal, or it vanished without a word
   kCancelled,
+  kDrained,  ///< cancelled by another user than the one who submitted it
   kTimeout,
   kPreempted,
   kNodeFailed,
@@ -84,6 +85,11 @@ class Scheduler {
 };
 
 /// Job name of a token: at most 15 characters, starting with a letter, as old batch systems want.
+/// The members of an array share theirs and are told apart by `_INDEX` behind it, here only.
 std::string job_name(const std::string& token);
+
+/// Characters of a token that is not an array's; a member's has `n` and its index behind it.
+inline constexpr std::size_t kTokenLength = 12;
+std::string member_token(const std::string& array_token, std::size_t index);
 
 }  // namespace grouser

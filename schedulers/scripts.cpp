@@ -59,9 +59,20 @@ constexpr const char* kBody = R"sh(@SETUP@
 token=@TOKEN@
 cd -- @DIRECTORY@ || exit 40
 @PROLOGUE@
+# A job that the batch system started over claims the run anew, so that its earlier life, which a
+# lost node may still carry on, publishes nothing more.
+claim=$token
 owns_run() {
-  [ "$(cat fence)" = "$token" ]
+  [ "$(cat fence)" = "$claim" ]
 }
+if [ -e "attempts/$token.started" ]; then
+  read -r owner life <fence || true
+  claim="$token $((${life:-0} + 1))"
+  if [ "$owner" = "$token" ]; then
+    printf '%s' "$claim" >"fence.$token" && mv -f "fence.$token" fence
+    rm -f "outcome-$token.json" "attempts/$token.exit" stop
+  fi
+fi
 
 # The batch system wants the job to end: the engine is asked by its stop file, unless the run has
 # gone over to another attempt.
@@ -84,7 +95,7 @@ if ! owns_run; then
   exit 22
 fi
 record started -1
-@LAUNCH@ &
+@SUCCESSOR@@LAUNCH@ &
 engine=$!
 code=127
 # A trapped signal ends `wait` early: wait again until the engine is gone.
@@ -95,15 +106,51 @@ done
 wait "$engine" 2>/dev/null
 last=$?
 [ "$last" -eq 127 ] || code=$last
-record exit "$code"
-exit "$code"
+if owns_run; then
+  record exit "$code"
+fi
+@EPILOGUE@exit "$code"
 )sh";
 
 struct Backend {
   std::string job_variable;  ///< where the environment names the job
   std::string prologue;      ///< lines after the change of directory
   std::string launcher;      ///< words before the engine unless the user gives others
+  std::string successor;     ///< command that queues @WAKE@ for after this job; "" = it cannot
 };
+
+// Small and short: it only looks and submits.
+constexpr const char* kSlurmSuccessor =
+    "sbatch --dependency=\"afterany:$SLURM_JOB_ID\" --job-name=gwake --ntasks=1 --time=10 "
+    "--output=/dev/null@ACCOUNTING@ @WAKE@";
+constexpr const char* kPbsSuccessor =
+    "qsub -W depend=afterany:\"$PBS_JOBID\" -N gwake -l walltime=00:10:00 -j oe -o "
+    "/dev/null@ACCOUNTING@ @WAKE@";
+
+std::string chain_accounting(const JobSpec& spec, bool is_slurm) {
+  const auto option = [&](const char* slurm, const char* pbs, const std::string& value) {
+    if (value.empty()) return std::string();
+    return is_slurm ? std::string(" --") + slurm + "=" + shell_quote(value)
+                    : std::string(" -") + pbs + " " + shell_quote(value);
+  };
+  return option("partition", "q", spec.partition) + option("account", "A", spec.account) +
+         (is_slurm ? option("qos", "", spec.qos) : "");
+}
+
+// Before the engine: whatever becomes of this job, somebody looks after it.
+std::string prologue_of(const JobSpec& spec, const Backend& backend) {
+  if (spec.chain != "prologue" || backend.successor.empty()) return "";
+  const bool is_slurm = backend.successor == kSlurmSuccessor;
+  return fill(backend.successor, {{"ACCOUNTING", chain_accounting(spec, is_slurm)},
+                                  {"WAKE", shell_quote((spec.root / kWakeScript).string())}}) +
+         " >/dev/null || echo \"no successor could be queued\" >&2\n";
+}
+
+// After it: the campaign goes on from this job's last breath.
+std::string epilogue_of(const JobSpec& spec) {
+  if (spec.chain != "epilogue") return "";
+  return "bash " + shell_quote((spec.root / kWakeScript).string()) + "\n";
+}
 
 std::string body(const JobSpec& spec, const Backend& backend) {
   return fill(kBody,
@@ -112,12 +159,39 @@ std::string body(const JobSpec& spec, const Backend& backend) {
                {"DIRECTORY", shell_quote(spec.run_directory.string())},
                {"PROLOGUE", backend.prologue},
                {"JOB", backend.job_variable},
+               {"SUCCESSOR", prologue_of(spec, backend)},
+               {"EPILOGUE", epilogue_of(spec)},
                {"LAUNCH", launch_line(spec, backend.launcher)}});
 }
 
 std::string head_comment(const JobSpec& spec) {
   return "# Attempt " + spec.token + " of run " + spec.label + ", campaign " + spec.campaign +
          "; written by grouser.\n";
+}
+
+std::string slurm_options(const JobSpec& spec, const std::string& name) {
+  std::string text;
+  const auto option = [&](const std::string& key, const std::string& value) {
+    if (!value.empty()) text += "#SBATCH --" + key + "=" + value + "\n";
+  };
+  option("job-name", name);
+  option("ntasks", std::to_string(spec.ranks));
+  if (spec.nodes > 0) option("nodes", std::to_string(spec.nodes));
+  if (spec.walltime > 0.0) {
+    option("time", slurm_clock(spec.walltime));
+    option("signal", "B:USR1@" + std::to_string(std::lround(0.5 * stop_margin(spec.walltime))));
+  }
+  if (!spec.memory.empty()) option("mem", amount_of(spec.memory) + unit_of(spec.memory));
+  option("partition", spec.partition);
+  option("account", spec.account);
+  option("qos", spec.qos);
+  std::string excluded;
+  for (const std::string& host : spec.excluded_hosts)
+    excluded += (excluded.empty() ? "" : ",") + host;
+  option("exclude", excluded);
+  // A job that was preempted or lost its node gets a successor of the manager's, under a token of
+  // its own.
+  return text + "#SBATCH --no-requeue\n";
 }
 
 std::string pbs_chunk(std::int64_t count, std::int64_t ranks, const JobSpec& spec) {
@@ -160,32 +234,44 @@ std::string make_local_script(const JobSpec& spec) {
   return "#!/bin/bash\n" + head_comment(spec) +
          body(spec,
               {"${GROUSER_JOB:-}",
-               "export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1\n", launcher});
+               "export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1\n", launcher, ""});
 }
 
 std::string make_slurm_script(const JobSpec& spec) {
-  std::string text = "#!/bin/bash\n";
-  const auto option = [&](const std::string& name, const std::string& value) {
-    if (!value.empty()) text += "#SBATCH --" + name + "=" + value + "\n";
-  };
-  option("job-name", job_name(spec.token));
-  option("ntasks", std::to_string(spec.ranks));
-  if (spec.nodes > 0) option("nodes", std::to_string(spec.nodes));
-  if (spec.walltime > 0.0) {
-    option("time", slurm_clock(spec.walltime));
-    option("signal", "B:USR1@" + std::to_string(std::lround(0.5 * stop_margin(spec.walltime))));
-  }
-  if (!spec.memory.empty()) option("mem", amount_of(spec.memory) + unit_of(spec.memory));
-  option("partition", spec.partition);
-  option("account", spec.account);
-  option("qos", spec.qos);
+  std::string text = "#!/bin/bash\n" + slurm_options(spec, job_name(spec.token));
   // Relative to the run directory, which sbatch is given as --chdir: a path here would need
   // quoting.
-  option("output", attempt_files::log(spec.token));
-  option("open-mode", "append");
-  text += "#SBATCH --no-requeue\n";
+  const std::string log = attempt_files::log(spec.token);
+  if (!spec.is_array_member) text += "#SBATCH --output=" + log + "\n#SBATCH --open-mode=append\n";
+  const std::string own_log = spec.is_array_member ? "exec >>" + log + " 2>&1\n" : "";
   return text + head_comment(spec) +
-         body(spec, {"${SLURM_JOB_ID:-}", "", "mpirun -n " + std::to_string(spec.ranks)});
+         body(spec, {"${SLURM_ARRAY_TASK_ID:+${SLURM_ARRAY_JOB_ID}_}"
+                     "${SLURM_ARRAY_TASK_ID:-${SLURM_JOB_ID:-}}",
+                     own_log, "mpirun -n " + std::to_string(spec.ranks), kSlurmSuccessor});
+}
+
+std::string make_slurm_array_script(const ArraySpec& spec) {
+  std::string text = "#!/bin/bash\n" + slurm_options(spec.common, spec.name);
+  text += "#SBATCH --array=0-" + std::to_string(spec.scripts.size() - 1);
+  if (spec.at_once > 0) text += "%" + std::to_string(spec.at_once);
+  text += "\n#SBATCH --output=/dev/null\n# Several runs of campaign " + spec.common.campaign +
+          "; written by grouser.\nscripts=(\n";
+  for (const auto& script : spec.scripts) text += "  " + shell_quote(script.string()) + "\n";
+  return text + ")\nexec bash \"${scripts[$SLURM_ARRAY_TASK_ID]}\"\n";
+}
+
+std::string make_wake_script(const std::filesystem::path& grouser,
+                             const std::filesystem::path& root) {
+  return "#!/bin/bash\n"
+         "# Carries the campaign on when a job has ended; written by grouser.\n"
+         "# What this job asked for must not reach the next one through its environment.\n"
+         "for name in ${!SLURM_@} ${!SBATCH_@}; do\n"
+         "  [ \"$name\" = SLURM_CONF ] || unset \"$name\"\n"
+         "done\n"
+         "exec " +
+         shell_join({grouser.string(), "tick", "-C", root.string(), "--patience", "120", "--carry",
+                     "480"}) +
+         " >>" + shell_quote((root / "wake.log").string()) + " 2>&1\n";
 }
 
 std::string make_pbs_script(const JobSpec& spec) {
@@ -205,14 +291,22 @@ std::string make_pbs_script(const JobSpec& spec) {
   // PBS copies its output file only at the end; the log is to be read while the job runs.
   return text + head_comment(spec) +
          body(spec, {"${PBS_JOBID:-}", "exec >>" + attempt_files::log(spec.token) + " 2>&1\n",
-                     "mpirun -n " + std::to_string(spec.ranks) + " --hostfile \"$PBS_NODEFILE\""});
+                     "mpirun -n " + std::to_string(spec.ranks) + " --hostfile \"$PBS_NODEFILE\"",
+                     kPbsSuccessor});
 }
 
 double stop_margin(double walltime) {
   return std::min(std::clamp(0.05 * walltime, 30.0, 600.0), 0.5 * walltime);
 }
 
-std::string job_name(const std::string& token) { return "g" + token; }
+std::string job_name(const std::string& token) {
+  if (token.size() <= kTokenLength + 1 || token[kTokenLength] != 'n') return "g" + token;
+  return "g" + token.substr(0, kTokenLength) + "_" + token.substr(kTokenLength + 1);
+}
+
+std::string member_token(const std::string& array_token, std::size_t index) {
+  return array_token + "n" + std::to_string(index);
+}
 
 std::string attempt_files::script(const std::string& token) {
   return std::string(kDirectory) + "/" + token + ".sh";

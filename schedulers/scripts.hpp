@@ -25,8 +25,19 @@ struct JobSpec {
   std::string partition;
   std::string account;
   std::string qos;
-  std::string launcher;    ///< words before the engine; "" = the backend's own
-  std::string setup_file;  ///< shell file read first; "" = none
+  std::string launcher;                     ///< words before the engine; "" = the backend's own
+  std::string setup_file;                   ///< shell file read first; "" = none
+  std::vector<std::string> excluded_hosts;  ///< not to be used (Slurm only)
+  bool is_array_member = false;             ///< its script is started by that of an array
+  std::string chain;  ///< "prologue", "epilogue", or anything else for neither
+};
+
+/// Several jobs that ask for the same and are handed over as one.
+struct ArraySpec {
+  JobSpec common;                              ///< what each of them asks for
+  std::string name;                            ///< job name of all of them
+  std::vector<std::filesystem::path> scripts;  ///< of the members, absolute, by their index
+  std::int64_t at_once = 0;                    ///< at work at one time; 0 = all
 };
 
 /// What the `{name}`s in a launcher stand for; there are no others. Pure.
@@ -38,6 +49,14 @@ std::map<std::string, std::string> launcher_values(const JobSpec& spec);
 std::string make_local_script(const JobSpec& spec);
 std::string make_slurm_script(const JobSpec& spec);
 std::string make_pbs_script(const JobSpec& spec);
+
+/// The script of a whole array: starts the member's own script.
+std::string make_slurm_array_script(const ArraySpec& spec);
+
+/// The script that carries the campaign on from inside a job: ROOT/wake.sh.
+std::string make_wake_script(const std::filesystem::path& grouser,
+                             const std::filesystem::path& root);
+inline constexpr const char* kWakeScript = "wake.sh";
 
 /// Seconds before the end of a job's walltime at which its engine must have ended: 5 %, at least
 /// 30 s and at most 10 min, never more than half. 0 for no walltime. Local.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "schedulers/slurm.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -73,14 +75,28 @@ std::optional<int> exit_code_of(const std::string& text) {
   return signal_number > 0 ? 128 + signal_number : code;
 }
 
-// Four fields, a number, a known state; the caller reads the fourth.
+// "123", or "123_4" for a task of an array.
+bool is_job_id(const std::string& text) {
+  const auto at = text.find('_');
+  return is_number(text.substr(0, at)) &&
+         (at == std::string::npos || is_number(text.substr(at + 1)));
+}
+
+// Four fields, a job's id, a known state; the caller reads the fourth. Tasks of an array share
+// their name, so their index is put behind it.
 std::optional<JobStatus> parse_line(const std::string& line, std::string& fourth) {
-  const auto parts = cut(line, '|');
-  if (parts.size() != 4 || !is_number(parts[0])) return std::nullopt;
+  auto parts = cut(line, '|');
+  if (parts.size() != 4 || !is_job_id(parts[0])) return std::nullopt;
+  if (const auto at = parts[0].find('_'); at != std::string::npos) parts[1] += parts[0].substr(at);
   const StateWord* state = state_word(parts[2]);
   if (state == nullptr) return std::nullopt;
   fourth = parts[3];
-  return JobStatus{parts[1], parts[0], state->phase, state->end, -1, parts[2]};
+  JobStatus status{parts[1], parts[0], state->phase, state->end, -1, parts[2]};
+  // "CANCELLED by 0": an administrator clears a node; "by" ourselves: a person's own wish.
+  const std::string by = "CANCELLED by ";
+  if (parts[2].starts_with(by) && parts[2] != by + std::to_string(::getuid()))
+    status.end = JobEnd::kDrained;
+  return status;
 }
 
 bool is_without_accounting(const std::string& message) {
@@ -102,6 +118,15 @@ std::string window_start(const std::vector<JobKey>& jobs) {
   std::array<char, 32> text{};
   std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &day);
   return text.data();
+}
+
+// All our jobs when the names would be too long for a command line (128 KiB for one argument).
+std::string name_filter(const std::set<std::string>& names) {
+  constexpr std::size_t kMostNames = 4000;
+  if (names.size() > kMostNames) return "--user=" + std::to_string(::getuid());
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ",") + name;
+  return "--name=" + list;
 }
 
 // Adds those of `found` that are asked for and not yet answered.
@@ -149,6 +174,8 @@ std::optional<std::vector<JobStatus>> parse_squeue(const std::string& out) {
 std::optional<std::vector<JobStatus>> parse_sacct(const std::string& out) {
   std::vector<JobStatus> jobs;
   for (const std::string& line : lines_of(out)) {
+    // "123_[4-7%2]": tasks that wait, which the queue knows.
+    if (line.find("_[") < line.find('|')) continue;
     std::string code;
     auto status = parse_line(line, code);
     const auto number = exit_code_of(code);
@@ -181,12 +208,13 @@ QueryAnswer SlurmScheduler::query(const std::vector<JobKey>& jobs) {
   QueryAnswer answer;
   answer.is_complete = true;
   if (jobs.empty()) return answer;
-  std::string names;
+  std::set<std::string> shared;
   std::set<std::string> open;
   for (const JobKey& job : jobs) {
-    names += (names.empty() ? "" : ",") + job.name;
+    shared.insert(job.name.substr(0, job.name.find('_')));
     open.insert(job.name);
   }
+  const std::string whose = name_filter(shared);
   const auto refuse = [&](const std::string& why) {
     answer.is_complete = false;
     answer.why_not = why;
@@ -194,7 +222,7 @@ QueryAnswer SlurmScheduler::query(const std::vector<JobKey>& jobs) {
   };
   // While the queue has the job it knows best; accounting may still show an earlier life of it.
   const auto queue = run_command(
-      {"squeue", "--noheader", "--name=" + names, "--states=all", "--format=%A|%j|%T|%r"},
+      {"squeue", "--noheader", "--array", whose, "--states=all", "--format=%i|%j|%T|%r"},
       kQuerySeconds);
   if (!queue.started) return refuse(queue.err);
   const auto queued = parse_squeue(queue.out);
@@ -207,8 +235,8 @@ QueryAnswer SlurmScheduler::query(const std::vector<JobKey>& jobs) {
   add_asked(alive, open, answer);
   if (open.empty()) return answer;
   const auto books =
-      run_command({"sacct", "--noheader", "--parsable2", "--allocations", "--name=" + names,
-                   "--starttime=" + window_start(jobs), "--format=JobIDRaw,JobName,State,ExitCode"},
+      run_command({"sacct", "--noheader", "--parsable2", "--allocations", whose,
+                   "--starttime=" + window_start(jobs), "--format=JobID,JobName,State,ExitCode"},
                   kQuerySeconds);
   const auto booked = parse_sacct(books.out);
   const bool is_readable = books.started && !books.timed_out && books.code == 0 && booked;
@@ -221,6 +249,9 @@ QueryAnswer SlurmScheduler::query(const std::vector<JobKey>& jobs) {
 std::string SlurmScheduler::cancel(const JobKey& job, CancelMode mode) {
   std::vector<std::string> words{"scancel"};
   if (mode == CancelMode::kKill) words.insert(words.end(), {"--full", "--signal=KILL"});
+  // The name of an array's task is that of the whole array.
+  if (job.id.empty() && job.name.find('_') != std::string::npos)
+    return job.name + ": its id is not known yet; the next tick looks for it";
   words.push_back(job.id.empty() ? "--name=" + job.name : job.id);
   const auto result = run_command(words, kQuerySeconds);
   if (!result.started) return result.err;

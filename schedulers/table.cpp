@@ -22,9 +22,10 @@ std::unique_ptr<Scheduler> make_pbs(const std::filesystem::path&) {
 }
 
 constexpr std::array kKinds{
-    SchedulerKind{"local", make_local_script, make_local, false, 0.0, 10.0},
-    SchedulerKind{"slurm", make_slurm_script, make_slurm, true, 30.0, 90.0},
-    SchedulerKind{"pbs", make_pbs_script, make_pbs, true, 30.0, 90.0},
+    SchedulerKind{"local", make_local_script, nullptr, make_local, false, 0.0, 10.0},
+    SchedulerKind{"slurm", make_slurm_script, make_slurm_array_script, make_slurm, true, 30.0,
+                  90.0},
+    SchedulerKind{"pbs", make_pbs_script, nullptr, make_pbs, true, 30.0, 90.0},
 };
 
 }  // namespace

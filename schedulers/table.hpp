@@ -15,6 +15,7 @@ namespace grouser {
 struct SchedulerKind {
   const char* name;
   std::string (*make_script)(const JobSpec&);
+  std::string (*make_array_script)(const ArraySpec&);  ///< nullptr: it has no arrays of ours
   /// @param campaign_root absolute; `local` keeps its job records below it
   std::unique_ptr<Scheduler> (*make)(const std::filesystem::path& campaign_root);
   bool is_batch;          ///< jobs wait in a queue shared with others; asking costs others too

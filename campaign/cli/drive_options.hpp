@@ -33,6 +33,7 @@ class OpenCampaign {
   const std::filesystem::path& root() const { return root_; }
   Store& store() { return store_; }
   Clock& clock() { return clock_; }
+  Scheduler& scheduler() { return *scheduler_; }
 
  private:
   std::filesystem::path root_;

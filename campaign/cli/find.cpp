@@ -26,7 +26,9 @@ constexpr const char* kEngineName = "grouser-engine";
 
 bool is_root(const fs::path& directory) {
   std::error_code unreadable;
-  const bool is_there = fs::exists(directory / Store::kFileName, unreadable);
+  // Without its database it can be rebuilt.
+  const bool is_there = fs::exists(directory / Store::kFileName, unreadable) ||
+                        fs::exists(directory / kJournalName, unreadable);
   if (unreadable)
     throw StorageError("cannot look into " + directory.string() + ": " + unreadable.message());
   return is_there;

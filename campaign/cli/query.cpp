@@ -25,7 +25,8 @@ Table answer(const Options& options) {
   } catch (const std::invalid_argument& error) {
     throw ConfigError(
         {Problem{"query", 0, 0, "", error.what(),
-                 "the views are v_status v_runs v_axes v_chunks v_attempts v_ledger"}});
+                 "the views are v_status v_runs v_axes v_chunks v_attempts v_seams v_ledger "
+                 "v_losses"}});
   }
 }
 

@@ -9,8 +9,12 @@ void add_resume(CLI::App& app, int& code) {
   CLI::App* verb =
       app.add_subcommand("resume", "go on with runs that are held, failed or cancelled");
   add_wish_options(*verb, *options);
-  verb->callback([options, &code] {
-    code = carry_out(*options, Wish::kResume, "goes on from its last checkpoint", 0.0);
+  auto accept_engine = std::make_shared<bool>(false);
+  verb->add_flag("--accept-engine", *accept_engine,
+                 "although the engine's program file is not the one that computed the run so far");
+  verb->callback([options, accept_engine, &code] {
+    const Wish wish = *accept_engine ? Wish::kResumeWithEngine : Wish::kResume;
+    code = carry_out(*options, wish, "goes on from its last checkpoint", 0.0);
   });
 }
 

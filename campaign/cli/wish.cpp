@@ -17,6 +17,8 @@ namespace {
 constexpr double kLeasePatience = 30.0;
 constexpr double kStep = 0.5;
 
+bool is_resume(Wish wish) { return wish == Wish::kResume || wish == Wish::kResumeWithEngine; }
+
 bool is_resumable(const RunRow& run) {
   return run.state == State::kHeld || run.state == State::kFailed || run.state == State::kCancelled;
 }
@@ -39,11 +41,11 @@ std::set<RunId> write_wishes(OpenCampaign& campaign, const WishOptions& options,
   const LeaseGuard lease(campaign.store(), campaign.clock(), kLeasePatience,
                          options.drive.take_over);
   const auto runs = select_runs(campaign.store(), options.runs, options.all);
-  if (wish == Wish::kResume)
+  if (is_resume(wish))
     refuse_without_directory(campaign.root(), campaign.store().campaign().source, runs);
   std::set<RunId> meant;
   for (const RunRow& run : runs) {
-    if (wish == Wish::kResume && !run.in_plan) {
+    if (is_resume(wish) && !run.in_plan) {
       if (!options.all) std::cout << run.label << ": the YAML no longer has it, nothing to do\n";
     } else if (make_wish(campaign.store(), run, wish, campaign.clock().now())) {
       meant.insert(run.id);
@@ -65,7 +67,7 @@ bool any_ending(const Store& store, const std::set<RunId>& runs) {
 // A resumed run that is held again was not helped. One that was stopped is held as it was meant.
 int code_after(const Store& store, const std::filesystem::path& root, const std::set<RunId>& meant,
                Wish wish) {
-  if (wish != Wish::kResume) return exit_codes::kOk;
+  if (!is_resume(wish)) return exit_codes::kOk;
   std::vector<RunRow> runs;
   for (const RunId id : meant) runs.push_back(store.run(id));
   return report_waiting(runs, root);

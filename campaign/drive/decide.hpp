@@ -31,6 +31,7 @@ struct Policy {
   std::int64_t looks = 2;      ///< and at this many looks in a row
   std::int64_t end_looks = 1;  ///< looks at which an ended job may still lack its outcome
   double linger = 60.0;        ///< a job may live this long after its outcome [s]
+  double hang = 0.0;           ///< a running job may stand still this long; 0 = for ever [s]
   double retry_delay = 0.0;    ///< before the first retry; doubles with each further one [s]
 };
 
@@ -46,7 +47,7 @@ struct Ending {
 struct Sighting {
   AttemptRow attempt;            ///< with its state brought up to date
   std::optional<Ending> ending;  ///< if it is over
-  bool must_cancel = false;      ///< its job lingers on after its outcome
+  bool must_cancel = false;      ///< its job lingers on after its outcome, or hangs
 };
 
 /// Judges an active attempt: the outcome file is believed first, then the scheduler, then the exit
@@ -63,6 +64,12 @@ Change settle(const RunRow& run, const ChunkRow& chunk, const AttemptRow& attemp
 std::optional<Change> consequence(const RunRow& run, const ChunkRow& chunk,
                                   const AttemptRow& attempt, const Sighting& sighting,
                                   const Evidence& evidence, const Policy& policy, double now);
+
+/// Seconds from `then` to `now` on the manager's clock; none when it was set back meanwhile. Pure.
+double seconds_since(double then, double now);
+
+/// Longest time before a retry [s].
+inline constexpr double kLongestDelay = 3600.0;
 
 /// The class of an engine's exit code. Pure.
 OutcomeClass class_of(EngineCode code);

@@ -41,7 +41,15 @@ class Driver {
   void carry_out_request(const RunRow& run, const AttemptRow& attempt);
   void end_attempt(const Change& change);
   void advance_runs();
-  void submit(const RunRow& run, const RunRow* bed);
+  void write_wake_script() const;
+  bool is_pausing();
+  // Nothing when the run is held instead.
+  std::optional<Submission> prepare(const RunRow& planned, const RunRow* bed, std::size_t active);
+  void submit(const Submission& submission);
+  void submit_together(const std::vector<Submission>& submissions, std::int64_t at_once);
+  JobSettings settings_for(const Submission& submission) const;
+  void hold(const RunRow& run, const ChunkRow& chunk, const std::string& reason);
+  RunRow without_suspect(const RunRow& run, const std::vector<AttemptRow>& attempts);
   std::int64_t job_limit() const;
 
   std::filesystem::path root_;
@@ -52,11 +60,17 @@ class Driver {
   const SchedulerKind& kind_;
   Policy policy_;
   TickReport report_;
+  std::vector<AttemptRow> ended_;  // the last ones, last first
 };
 
 /// Whether nothing more will happen without a person: every run has ended, is held, or waits for
 /// one that is; of a run that the YAML no longer has, no job is left. Pure.
 bool is_at_rest(const std::vector<RunRow>& runs);
+
+/// Whether a further tick soon has something to do although no job ends until then: an end that is
+/// to be confirmed, a job that cannot be found, a retry that waits for its time. Pure.
+bool needs_another_look(const std::vector<RunRow>& runs, const std::vector<AttemptRow>& active,
+                        double now);
 
 /// How patient the manager is with jobs of that kind. Pure.
 Policy policy_of(const SchedulerKind& kind, const Settings& settings, const Patience& patience);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "campaign/drive/decide.hpp"
@@ -23,6 +25,9 @@ constexpr std::array<std::pair<EngineCode, OutcomeClass>, 11> kCodeClasses{{
 
 // An absent job that said it had begun gets this many times the grace: it may still be running.
 constexpr double kStartedPatience = 3.0;
+
+// A job that seems to hang is looked at again this much later [s].
+constexpr double kHangConfirmed = 30.0;
 
 // Exit codes of a shell that could not start the program.
 constexpr int kNotExecutable = 126;
@@ -70,6 +75,8 @@ Ending ending_by_job(const JobStatus& job, const std::optional<JobRecord>& exit)
       return {OutcomeClass::kResource, code, "out of memory" + detail};
     case JobEnd::kCancelled:
       return {OutcomeClass::kUser, code, "the job was cancelled" + detail};
+    case JobEnd::kDrained:
+      return {OutcomeClass::kInfra, code, "the job was ended by an administrator" + detail};
     case JobEnd::kKilled:
     case JobEnd::kDone:
     case JobEnd::kFailed:
@@ -107,6 +114,7 @@ Sighting look_at_outcome(AttemptRow attempt, const Evidence& evidence, const Pol
   if (attempt.outcome_at == 0.0) attempt.outcome_at = now;
   // Whether a signal came from the batch system or from a person, only the scheduler knows.
   const bool script_ended = evidence.exit.has_value() && !evidence.outcome->by_signal;
+  if (now < attempt.outcome_at) attempt.outcome_at = now;  // the clock was set back
   const bool lingers = now - attempt.outcome_at >= policy.linger;
   const bool is_over = script_ended || job_has_ended(evidence) || is_absent(evidence);
   sighting.attempt = attempt;
@@ -118,7 +126,8 @@ Sighting look_at_outcome(AttemptRow attempt, const Evidence& evidence, const Pol
 // One more look at which it seemed over; true when that is enough.
 bool count_absence(AttemptRow& attempt, const Evidence& evidence, double now, double grace,
                    std::int64_t looks) {
-  if (attempt.absences == 0) {
+  if (attempt.absences == 0 || now < attempt.absent_since) {
+    attempt.absences = 0;
     attempt.absent_since = now;
     attempt.absent_step = evidence.progress_step;
   }
@@ -147,12 +156,66 @@ Sighting look_at_absence(AttemptRow attempt, const Evidence& evidence, const Pol
   return {attempt, ending};
 }
 
+// Writing down every step seen would be much writing; often enough is a small part of the patience.
+void note_progress(AttemptRow& attempt, const Evidence& evidence, const Policy& policy,
+                   double now) {
+  constexpr double kPart = 0.125;
+  const double known_for = seconds_since(attempt.progress_at, now);
+  if (attempt.progress_at == 0.0 || now < attempt.progress_at ||
+      (evidence.progress_step != attempt.progress_step && known_for >= kPart * policy.hang)) {
+    attempt.progress_step = evidence.progress_step;
+    attempt.progress_at = now;
+  }
+}
+
+// The job is alive as far as the scheduler knows.
+Sighting look_at_alive(AttemptRow attempt, const Evidence& evidence, const Policy& policy,
+                       double now) {
+  attempt.state = evidence.job->phase == JobPhase::kQueued ? State::kQueued : State::kRunning;
+  attempt.absences = 0;
+  attempt.reason = attempt.state == State::kQueued ? evidence.job->detail : "";
+  Sighting sighting{attempt, std::nullopt};
+  // One that waits, or that was suspended, cannot advance.
+  if (attempt.state == State::kQueued || evidence.job->detail.rfind("SUSPENDED", 0) == 0) {
+    sighting.attempt.progress_at = 0.0;
+    return sighting;
+  }
+  if (policy.hang <= 0.0) return sighting;
+  note_progress(sighting.attempt, evidence, policy, now);
+  const double still = evidence.progress_step == sighting.attempt.progress_step
+                           ? seconds_since(sighting.attempt.progress_at, now)
+                           : 0.0;
+  const bool has_stepped = evidence.progress_step > 0;
+  AttemptRow& seen = sighting.attempt;
+  if (still < policy.hang * (has_stepped ? 1.0 : kStartedPatience)) {
+    seen.hung_seconds = 0.0;
+    return sighting;
+  }
+  // A machine that slept, manager and all, looks the same at first: it is asked once more before
+  // the job is killed. The suspicion is kept with a minus sign.
+  if (seen.hung_seconds == 0.0) {
+    seen.hung_seconds = -still;
+    return sighting;
+  }
+  if (seen.hung_seconds < 0.0 && still < -seen.hung_seconds + kHangConfirmed) return sighting;
+  seen.hung_seconds = still;
+  seen.reason =
+      "no step for " + std::to_string(std::llround(still)) + " s: the job hangs and is killed";
+  sighting.must_cancel = true;
+  return sighting;
+}
+
 Sighting look_at_ended(AttemptRow attempt, const Evidence& evidence, const Policy& policy,
                        double now) {
   const Ending ending = job_has_ended(evidence) ? ending_by_job(*evidence.job, evidence.exit)
                                                 : ending_by_code(evidence.exit->code);
   // On a shared file system the outcome may become visible after the end of the job does.
   if (!count_absence(attempt, evidence, now, 0.0, policy.end_looks)) return {attempt, std::nullopt};
+  if (attempt.hung_seconds > 0.0)
+    return {attempt,
+            Ending{OutcomeClass::kInfra, ending.code,
+                   "made no step for " + std::to_string(std::llround(attempt.hung_seconds)) +
+                       " s and was killed (limits.hang)"}};
   return {attempt, ending};
 }
 
@@ -165,6 +228,8 @@ void adopt(AttemptRow& attempt, const Evidence& evidence, double now) {
 }
 
 }  // namespace
+
+double seconds_since(double then, double now) { return std::max(now - then, 0.0); }
 
 const char* word_of(OutcomeClass outcome_class) {
   switch (outcome_class) {
@@ -201,15 +266,14 @@ Sighting look(const AttemptRow& before, const Evidence& evidence, const Policy& 
   const bool has_begun =
       evidence.started || (evidence.job && evidence.job->phase != JobPhase::kQueued);
   if (has_begun && attempt.running_at == 0.0) attempt.running_at = now;
+  if (evidence.started && attempt.host.empty()) attempt.host = evidence.started->host;
+  // The scheduler started it over, or will: what an earlier life of the job left is no end.
+  if (evidence.job && evidence.job->phase == JobPhase::kQueued)
+    return look_at_alive(attempt, evidence, policy, now);
   if (evidence.outcome) return look_at_outcome(attempt, evidence, policy, now);
   if (job_has_ended(evidence) || evidence.exit)
     return look_at_ended(attempt, evidence, policy, now);
-  if (evidence.job) {
-    attempt.state = evidence.job->phase == JobPhase::kQueued ? State::kQueued : State::kRunning;
-    attempt.absences = 0;
-    attempt.reason = attempt.state == State::kQueued ? evidence.job->detail : "";
-    return {attempt, std::nullopt};
-  }
+  if (evidence.job) return look_at_alive(attempt, evidence, policy, now);
   if (is_absent(evidence)) return look_at_absence(attempt, evidence, policy, now);
   attempt.state = attempt.job.empty() ? State::kSubmitting : State::kUnknown;
   attempt.reason = "cannot ask the scheduler: " + evidence.why_not_answered;

@@ -7,7 +7,6 @@
 namespace grouser {
 namespace {
 
-constexpr double kLongestDelay = 3600.0;
 constexpr const char* kStoppedReason = "stopped on request";
 
 // What becomes of the run after an attempt.
@@ -32,6 +31,7 @@ void record_outcome(AttemptRow& attempt, const Evidence& evidence) {
   attempt.wall_seconds = outcome.wall_seconds;
   attempt.compute_seconds = outcome.compute_seconds;
   attempt.checkpoint_seconds = outcome.checkpoint_seconds;
+  attempt.slowest_checkpoint = outcome.slowest_checkpoint_seconds;
   attempt.checkpoint = outcome.checkpoint;
   attempt.state_hash = outcome.state_hash;
 }
@@ -138,6 +138,24 @@ void advance(Change& change, const RunRow& run) {
   change.chunk_after = rest;
 }
 
+// What the attempt's time came to. One that left no outcome occupied its job for as long as the
+// manager saw it running, and its steps are taken as equally long.
+void book(AttemptRow& attempt, const RunRow& run, double now) {
+  const auto saved = static_cast<double>(std::max<std::int64_t>(run.step - attempt.start_step, 0));
+  double computing = attempt.compute_seconds;
+  attempt.hung_seconds = std::max(attempt.hung_seconds, 0.0);
+  auto steps = static_cast<double>(attempt.steps_done);
+  if (!attempt.has_outcome) {
+    const double occupied =
+        attempt.running_at > 0.0 ? std::max(now - attempt.running_at, 0.0) : 0.0;
+    attempt.hung_seconds = std::min(attempt.hung_seconds, occupied);
+    computing = occupied - attempt.hung_seconds;
+    steps = static_cast<double>(attempt.progress_step - attempt.start_step);
+  }
+  attempt.useful_seconds = computing * std::min(saved / std::max({steps, saved, 1.0}), 1.0);
+  attempt.lost_seconds = computing - attempt.useful_seconds;
+}
+
 void set_states(Change& change, Next next, const Ending& ending, const Policy& policy, double now) {
   RunRow& run = *change.run;
   ChunkRow& chunk = *change.chunk;
@@ -182,7 +200,9 @@ void set_states(Change& change, Next next, const Ending& ending, const Policy& p
 
 bool is_same_sight(const AttemptRow& a, const AttemptRow& b) {
   return a.state == b.state && a.job == b.job && a.reason == b.reason && a.absences == b.absences &&
-         a.outcome_at == b.outcome_at && a.running_at == b.running_at;
+         a.outcome_at == b.outcome_at && a.running_at == b.running_at && a.host == b.host &&
+         a.progress_at == b.progress_at && a.hung_seconds == b.hung_seconds &&
+         a.absent_since == b.absent_since;
 }
 
 }  // namespace
@@ -203,6 +223,8 @@ Change settle(const RunRow& run, const ChunkRow& chunk, const AttemptRow& attemp
   change.attempt->code = ending.code;
   change.attempt->reason = ending.reason;
   change.attempt->ended_at = now;
+  change.attempt->progress_step = std::max(change.attempt->progress_step, evidence.progress_step);
+  book(*change.attempt, *change.run, now);
   set_states(change, next, ending, policy, now);
   return change;
 }

@@ -14,6 +14,9 @@
 namespace grouser {
 namespace {
 
+// Scripts of job arrays, in the campaign root.
+constexpr const char* kArrays = "arrays";
+
 // Before a busy scheduler is asked again.
 constexpr double kBusyDelay = 60.0;
 
@@ -47,8 +50,53 @@ void withdraw(Store& store, RunRow run, ChunkRow chunk, AttemptRow attempt, Stat
   store.apply({run, chunk, attempt, std::nullopt, false});
 }
 
-void record_answer(Store& store, const RunRow& run, const ChunkRow& chunk, AttemptRow attempt,
-                   const SubmitAnswer& answer, double now) {
+// An attempt that is written down, with its run and chunk as they are then.
+struct Begun {
+  RunRow run;
+  ChunkRow chunk;
+  AttemptRow attempt;
+};
+
+Begun begin_attempt(const JobSettings& shared, Store& store, const Submission& submission,
+                    const std::string& token, double now) {
+  Begun begun{submission.run, submission.chunk, {}};
+  AttemptRow& attempt = begun.attempt;
+  RunRow& run = begun.run;
+  attempt.run = run.id;
+  attempt.chunk = begun.chunk.id;
+  attempt.token = token;
+  attempt.state = State::kSubmitting;
+  attempt.created_at = now;
+  attempt.start_step = run.step;
+  attempt.step = run.step;
+  attempt.time = run.time;
+  attempt.engine_hash = shared.engine_hash;
+  attempt.ranks = static_cast<int>(shared.settings.resources.ranks);
+  if (run.step == 0 || run.engine_hash.empty()) run.engine_hash = shared.engine_hash;
+  run.state = State::kSubmitting;
+  run.reason.clear();
+  begun.chunk.state = State::kSubmitting;
+  attempt = store.add_attempt(attempt, run, begun.chunk);
+  fault_point("after_tx1");
+  return begun;
+}
+
+// @return "" or why the files could not be written; the run is then held
+std::string prepare_files(const Begun& begun, const JobSpec& spec, const SchedulerKind& kind,
+                          Store& store, double now) {
+  try {
+    write_job_files(spec, kind);
+    return "";
+  } catch (const StorageError& error) {
+    withdraw(store, begun.run, begun.chunk, begun.attempt, State::kHeld, error.what(), now);
+    return error.what();
+  }
+}
+
+void record_answer(Store& store, const Begun& begun, const SubmitAnswer& answer, double now) {
+  const RunRow& run = begun.run;
+  const ChunkRow& chunk = begun.chunk;
+  AttemptRow attempt = begun.attempt;
   switch (answer.kind) {
     case SubmitAnswer::Kind::kAccepted: {
       attempt.job = answer.job;
@@ -99,6 +147,8 @@ JobSpec job_spec(const JobSettings& shared, const RunRow& run, const ChunkRow& c
     const double margin = is_batch ? stop_margin(resources.walltime) : 0.0;
     add("--max-seconds", format_number(resources.walltime - margin));
   }
+  if (shared.checkpoint_seconds > 0.0)
+    add("--checkpoint-seconds", format_number(shared.checkpoint_seconds));
   spec.ranks = resources.ranks;
   spec.nodes = resources.nodes;
   spec.walltime = resources.walltime;
@@ -108,6 +158,8 @@ JobSpec job_spec(const JobSettings& shared, const RunRow& run, const ChunkRow& c
   spec.qos = resources.qos;
   spec.launcher = resources.launcher;
   spec.setup_file = resources.setup_file;
+  spec.excluded_hosts = shared.excluded_hosts;
+  spec.chain = shared.settings.chain;
   return spec;
 }
 
@@ -122,35 +174,54 @@ std::string make_token() {
 }
 
 SubmitAnswer submit_attempt(const JobSettings& shared, const SchedulerKind& kind,
-                            Scheduler& scheduler, Store& store, RunRow run, ChunkRow chunk,
-                            const RunRow* bed, double now) {
-  AttemptRow attempt;
-  attempt.run = run.id;
-  attempt.chunk = chunk.id;
-  attempt.token = make_token();
-  attempt.state = State::kSubmitting;
-  attempt.created_at = now;
-  attempt.start_step = run.step;
-  attempt.step = run.step;
-  attempt.time = run.time;
-  attempt.engine_hash = shared.engine_hash;
-  run.state = State::kSubmitting;
-  run.reason.clear();
-  chunk.state = State::kSubmitting;
-  attempt = store.add_attempt(attempt, run, chunk);
-  fault_point("after_tx1");
-  const JobSpec spec = job_spec(shared, run, chunk, bed, attempt.token);
-  try {
-    write_job_files(spec, kind);
-  } catch (const StorageError& error) {
-    withdraw(store, run, chunk, attempt, State::kHeld, error.what(), now);
-    return {SubmitAnswer::Kind::kRefused, "", error.what()};
-  }
-  const SubmitAnswer answer = scheduler.submit(
-      {job_name(attempt.token), spec.run_directory / attempt_files::script(attempt.token),
-       spec.run_directory, spec.run_directory / attempt_files::log(attempt.token)});
+                            Scheduler& scheduler, Store& store, const Submission& submission,
+                            double now) {
+  const Begun begun = begin_attempt(shared, store, submission, make_token(), now);
+  const JobSpec spec =
+      job_spec(shared, begun.run, begun.chunk, submission.bed, begun.attempt.token);
+  const std::string problem = prepare_files(begun, spec, kind, store, now);
+  if (!problem.empty()) return {SubmitAnswer::Kind::kRefused, "", problem};
+  const std::string& token = begun.attempt.token;
+  const SubmitAnswer answer =
+      scheduler.submit({job_name(token), spec.run_directory / attempt_files::script(token),
+                        spec.run_directory, spec.run_directory / attempt_files::log(token)});
   fault_point("after_submit");
-  record_answer(store, run, chunk, attempt, answer, now);
+  record_answer(store, begun, answer, now);
+  fault_point("after_tx2");
+  return answer;
+}
+
+SubmitAnswer submit_array(const JobSettings& shared, const SchedulerKind& kind,
+                          Scheduler& scheduler, Store& store,
+                          const std::vector<Submission>& submissions, std::int64_t at_once,
+                          double now) {
+  const std::string token = make_token();
+  std::vector<Begun> members;
+  ArraySpec array;
+  array.name = job_name(token);
+  array.at_once = at_once;
+  for (const Submission& one : submissions) {
+    const std::string own = member_token(token, members.size());
+    const Begun begun = begin_attempt(shared, store, one, own, now);
+    JobSpec spec = job_spec(shared, begun.run, begun.chunk, one.bed, own);
+    spec.is_array_member = true;
+    if (!prepare_files(begun, spec, kind, store, now).empty()) continue;
+    array.common = spec;
+    array.scripts.push_back(spec.run_directory / attempt_files::script(own));
+    members.push_back(begun);
+  }
+  if (members.empty()) return {SubmitAnswer::Kind::kRefused, "", "no run could be prepared"};
+  const auto script = shared.root / kArrays / (array.name + ".sh");
+  std::filesystem::create_directories(script.parent_path());
+  write_atomic(script, kind.make_array_script(array));
+  SubmitAnswer answer =
+      scheduler.submit({array.name, script, shared.root, shared.root / kArrays / "log"});
+  fault_point("after_submit");
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    SubmitAnswer own = answer;
+    if (!own.job.empty()) own.job += "_" + std::to_string(i);
+    record_answer(store, members[i], own, now);
+  }
   fault_point("after_tx2");
   return answer;
 }

@@ -38,6 +38,11 @@ bool resume(Store& store, RunRow run) {
 
 bool make_wish(Store& store, const RunRow& run, Wish wish, double now) {
   if (wish == Wish::kResume) return resume(store, run);
+  if (wish == Wish::kResumeWithEngine) {
+    RunRow freed = run;
+    freed.engine_hash.clear();
+    return resume(store, freed);
+  }
   const bool is_stop = wish == Wish::kStop;
   if (is_active(run.state)) {
     RunRow asked = run;

@@ -10,9 +10,10 @@ namespace grouser {
 
 /// What a person may want of runs.
 enum class Wish {
-  kStop,    ///< end in order with a checkpoint, then be held
-  kCancel,  ///< end now
-  kResume,  ///< go on after HELD, FAILED or CANCELLED
+  kStop,              ///< end in order with a checkpoint, then be held
+  kCancel,            ///< end now
+  kResume,            ///< go on after HELD, FAILED or CANCELLED
+  kResumeWithEngine,  ///< and with the engine as it is now, whatever computed the state so far
 };
 
 /// Writes a wish down; the next ticks carry it out where a job is active. Needs the lease.

@@ -102,6 +102,21 @@ void describe_resources(FieldVisitor& v, Resources& r, const std::string& schedu
   describe_batch_words(v, r);
   v.integer({"concurrent", "jobs at once; 0 = cores / ranks for local, else no limit", kOptional},
             r.concurrent, 0, 1'000'000);
+  v.flag({"array", "jobs that may start together become one job array (slurm)", kOptional},
+         r.array);
+  v.rule("array", !r.array || scheduler == "slurm", "is for slurm alone", "leave it out");
+}
+
+void describe_limits(FieldVisitor& v, Limits& l) {
+  v.integer({"max_chunks", "jobs of one run, failed ones included; 0 = no limit", kOptional},
+            l.max_chunks, 0, kMaxChunks);
+  v.quantity({"node_hours", "hours of nodes for the whole campaign; 0 = no limit", kOptional},
+             l.node_hours, "1", Range::not_negative());
+  v.quantity({"hang",
+              "a running job that makes no step for so long is killed and tried again; three times "
+              "as long before its first step; 0 = never",
+              kOptional},
+             l.hang, "s", Range::not_negative());
 }
 
 void describe_settings(FieldVisitor& v, Settings& s) {
@@ -114,7 +129,28 @@ void describe_settings(FieldVisitor& v, Settings& s) {
                    "or scheduler",
                    kOptional},
                   s.retries.infrastructure, 0, 1000);
+    inner.quantity({"delay", "before the first retry, doubled with each further one; not for local",
+                    kOptional},
+                   s.retries.delay, "s", Range::closed(0.0, 3600.0));
   });
+  v.word({"chain", "who goes on when a job ends", kOptional}, s.chain,
+         {"manager", "prologue", "epilogue"});
+  v.rule("chain", s.chain != "prologue" || s.scheduler != "local",
+         "cannot be prologue with scheduler local",
+         "a job of this machine has no queue to wait in");
+  v.group({"planner", "what is taken from measurements once there are any", kOptional},
+          [&](FieldVisitor& inner) {
+            inner.flag({"checkpoints",
+                        "wall time between checkpoints from their cost and the failures so far, in "
+                        "place of output.checkpoint_interval",
+                        kOptional},
+                       s.planner.checkpoints);
+            inner.flag({"walltime", "of each job from the speed so far, up to resources.walltime",
+                        kOptional},
+                       s.planner.walltime);
+          });
+  v.group({"limits", "where the campaign stops by itself", kOptional},
+          [&](FieldVisitor& inner) { describe_limits(inner, s.limits); });
   v.rule("resources", s.scheduler == "local" || s.resources.walltime > 0.0,
          "has no walltime, and scheduler " + s.scheduler + " needs one",
          "for example walltime: 8h");

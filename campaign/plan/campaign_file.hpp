@@ -22,6 +22,7 @@ struct Resources {
   std::string launcher;         ///< starts the ranks, for example "srun --mpi=pmix"
   std::string setup_file;       ///< shell file read before the engine starts: modules, paths
   std::int64_t concurrent = 0;  ///< jobs at once; 0 = cores / ranks for `local`, else no limit
+  bool array = false;           ///< jobs that may start together are submitted as one (slurm)
 };
 
 /// How the simulated time of a run is cut into jobs; walltime adds cuts by itself.
@@ -32,13 +33,30 @@ struct ChunkRule {
 
 struct RetryRule {
   std::int64_t infrastructure = 3;  ///< attempts in a row that may fail without progress
+  double delay = 60.0;              ///< before the first retry, then doubled; not for `local` [s]
 };
 
-/// Scheduler, resources and retries: what may change during a campaign without new runs.
+/// What is left to the planner (planner.hpp) once something is measured.
+struct PlannerRule {
+  bool checkpoints = false;  ///< wall time between checkpoints, in place of the case's interval
+  bool walltime = false;     ///< of each job, up to resources.walltime
+};
+
+/// Where a campaign stops by itself rather than burn hours; 0 = no limit.
+struct Limits {
+  std::int64_t max_chunks = 0;  ///< jobs of one run
+  double node_hours = 0.0;      ///< of the whole campaign
+  double hang = 1800.0;         ///< a running job that does not advance for so long is killed [s]
+};
+
+/// Scheduler, resources, retries and limits: what may change during a campaign without new runs.
 struct Settings {
   std::string scheduler = "local";
   Resources resources;
   RetryRule retries;
+  Limits limits;
+  PlannerRule planner;
+  std::string chain = "manager";  ///< who goes on when a job ends: see docs/reference/chains.md
 };
 
 /// One point of an axis: a label and the values it sets, as dotted paths into the case.

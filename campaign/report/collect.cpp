@@ -51,6 +51,10 @@ AttemptData attempt_data(const AttemptRow& row, std::int64_t chunk_position) {
   attempt.wall_seconds = row.wall_seconds;
   attempt.compute_seconds = row.compute_seconds;
   attempt.checkpoint_seconds = row.checkpoint_seconds;
+  attempt.useful_seconds = row.useful_seconds;
+  attempt.lost_seconds = row.lost_seconds + row.hung_seconds;
+  // Without an outcome the engine's own measure is missing, but its job was there all the same.
+  if (!row.has_outcome) attempt.wall_seconds = attempt.useful_seconds + attempt.lost_seconds;
   attempt.start_step = row.start_step;
   attempt.steps_done = row.steps_done;
   attempt.particles = row.particles;

@@ -65,6 +65,8 @@ struct AttemptData {
   double wall_seconds = 0.0;
   double compute_seconds = 0.0;
   double checkpoint_seconds = 0.0;
+  double useful_seconds = 0.0;  ///< computing that is in the run's state
+  double lost_seconds = 0.0;    ///< computing that is not, and standing still
   std::int64_t start_step = 0;
   std::int64_t steps_done = 0;
   std::int64_t particles = 0;

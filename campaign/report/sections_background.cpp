@@ -155,13 +155,15 @@ std::string ledger_section(const ReportData& data) {
                 "Speed [10⁶&#160;particle-steps/s]", "Continued from", "Ended at"},
                {false, true, true, false, false, true, true, true, true, true, true, false, false});
   double wall = 0.0;
-  double compute = 0.0;
   double checkpoint = 0.0;
+  double useful = 0.0;
+  double lost = 0.0;
   for (const RunData& run : data.runs)
     for (const AttemptData& attempt : run.attempts) {
       wall += attempt.wall_seconds;
-      compute += attempt.compute_seconds;
       checkpoint += attempt.checkpoint_seconds;
+      useful += attempt.useful_seconds;
+      lost += attempt.lost_seconds;
       table.row({escape_html(run.label), std::to_string(attempt.chunk),
                  std::to_string(attempt.number), state_badge(attempt.state),
                  escape_html(attempt.outcome),
@@ -174,9 +176,11 @@ std::string ledger_section(const ReportData& data) {
   if (table.rows() == 0) return "";
   const std::string sum =
       "<p>" + shown_count(static_cast<long long>(table.rows())) + " attempts, " +
-      shown_duration(wall) + " in all: " + shown_duration(compute) + " computing, " +
-      shown_duration(checkpoint) + " writing checkpoints, " +
-      shown_duration(std::max(0.0, wall - compute - checkpoint)) +
+      shown_duration(wall) + " in all: " + shown_duration(useful) + " computing that is in the " +
+      "results" +
+      (wall > 0.0 ? " (goodput " + shown_number(100.0 * useful / wall, 0) + "&#160;%)" : "") +
+      ", " + shown_duration(lost) + " computing that was lost, " + shown_duration(checkpoint) +
+      " writing checkpoints, " + shown_duration(std::max(0.0, wall - useful - lost - checkpoint)) +
       " starting and ending. Equal hashes at a seam mean that a chunk continued "
       "from exactly the state its predecessor left.</p>\n";
   return section("ledger", "Chunk ledger", sum + folded("All attempts", table.html()));

@@ -28,6 +28,7 @@ void columns_of_run(Visitor& v, Row& r) {
   v("requested_at", r.requested_at), v("failures", r.failures), v("not_before", r.not_before);
   v("step", r.step), v("time", r.time), v("end_time", r.end_time);
   v("checkpoint", r.checkpoint), v("state_hash", r.state_hash), v("particles", r.particles);
+  v("engine_hash", r.engine_hash);
 }
 
 template <class Visitor, class Row>
@@ -49,6 +50,9 @@ void columns_of_attempt(Visitor& v, Row& r) {
   v("checkpoint_seconds", r.checkpoint_seconds), v("checkpoint", r.checkpoint);
   v("state_hash", r.state_hash), v("engine_hash", r.engine_hash), v("absences", r.absences);
   v("absent_since", r.absent_since), v("absent_step", r.absent_step);
+  v("host", r.host), v("progress_step", r.progress_step), v("progress_at", r.progress_at);
+  v("slowest_checkpoint", r.slowest_checkpoint), v("useful_seconds", r.useful_seconds);
+  v("lost_seconds", r.lost_seconds), v("hung_seconds", r.hung_seconds);
 }
 
 /// Names of the columns.

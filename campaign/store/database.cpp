@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "campaign/store/database.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <sys/vfs.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -43,12 +46,25 @@ JournalMode journal_mode_for(unsigned long file_system) {
   return is_shared ? JournalMode{"DELETE", "FULL"} : JournalMode{"WAL", "FULL"};
 }
 
+void create_private(const std::filesystem::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  if (descriptor >= 0) ::close(descriptor);  // else SQLite says why
+}
+
+std::uintmax_t inode_of(const std::filesystem::path& file) {
+  struct stat answer {};
+  return ::stat(file.c_str(), &answer) == 0 ? static_cast<std::uintmax_t>(answer.st_ino) : 0;
+}
+
 std::unique_ptr<SQLite::Database> open_database(const std::filesystem::path& file, bool to_write) {
   try {
     std::error_code unreadable;
     if (!to_write && !std::filesystem::exists(file, unreadable))
       throw StorageError(file.string() + ": " +
-                         (unreadable ? unreadable.message() : "there is no such database"));
+                         (unreadable ? unreadable.message()
+                                     : "there is no such database; if its journal is there, "
+                                       "`grouser rebuild` makes it anew"));
+    if (to_write) create_private(file);
     const int flags =
         to_write ? SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE : SQLite::OPEN_READONLY;
     auto database = std::make_unique<SQLite::Database>(file.string(), flags, kBusyMilliseconds);

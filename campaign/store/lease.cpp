@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "campaign/store/change.hpp"
 #include "campaign/store/database.hpp"
 
 namespace grouser {
@@ -38,12 +39,37 @@ std::optional<LeaseHolder> read_lease(SQLite::Database& database) {
 }
 
 void Store::Impl::confirm_lease() {
+  if (is_replay) return;
+  if (inode_of(database->getFilename()) != inode)
+    throw LeaseLost(database->getFilename() +
+                    ": was replaced or deleted while this manager worked; nothing was written");
   const auto holder = read_lease(*database);
   if (!lease || !holder || !is_same_process(*holder, *lease))
     throw LeaseLost(holder ? "process " + std::to_string(holder->pid) + " on " + holder->host +
                                  " took over the campaign"
                            : "the campaign is written to without its lease");
   database->exec("UPDATE lease SET beat = beat + 1");
+}
+
+void Store::Impl::note(nlohmann::json change) {
+  if (is_replay) return;
+  database->exec("UPDATE journal SET number = number + 1");
+  change["n"] = database->execAndGet("SELECT number FROM journal").getInt64();
+  journal->append(change.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+void Store::Impl::complete_journal(const Store& store) {
+  const std::int64_t number = database->execAndGet("SELECT number FROM journal").getInt64();
+  if (journal->last_number() >= number && std::filesystem::exists(journal->file())) return;
+  if (!store.has_campaign()) return;
+  WriteTransaction transaction(*database);
+  confirm_lease();
+  // From before there was a journal, or the journal was lost: it begins anew with all rows.
+  std::error_code error;
+  const auto old = std::filesystem::path(journal->file()).concat(".old");
+  std::filesystem::rename(journal->file(), old, error);
+  note(json_of_all(store));
+  transaction.commit();
 }
 
 std::optional<LeaseHolder> Store::take_lease(
@@ -58,6 +84,7 @@ std::optional<LeaseHolder> Store::take_lease(
     write_lease(database, mine);
     transaction.commit();
     impl_->lease = mine;
+    impl_->complete_journal(*this);
     return std::nullopt;
   });
 }

@@ -13,7 +13,7 @@ struct Migration {
   const char* sql;
 };
 
-constexpr std::array kMigrations{Migration{1, kSchemaSql}};
+constexpr std::array kMigrations{Migration{1, kSchemaSql}, Migration{2, kSchema2Sql}};
 
 }  // namespace
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "campaign/store/change.hpp"
 #include "campaign/store/database.hpp"
 #include "campaign/store/tables.hpp"
 
 namespace grouser {
-namespace {
 
 void put_campaign(SQLite::Database& database, const CampaignRow& campaign) {
   SQLite::Statement statement(
@@ -13,17 +13,6 @@ void put_campaign(SQLite::Database& database, const CampaignRow& campaign) {
   ColumnBinder binder(statement);
   columns_of_campaign(binder, campaign);
   statement.exec();
-}
-
-// A run of the sweep that has no wheel may have the same grains; only the shared bed stays in the
-// plan as long as a wheel run needs it.
-RunId bed_of_key(SQLite::Database& database, const std::string& key) {
-  SQLite::Statement statement(database,
-                              "SELECT id FROM run WHERE kind = 'bed' AND key = ? "
-                              "ORDER BY directory LIKE 'beds/%' DESC, id");
-  statement.bind(1, key);
-  GROUSER_CHECK(statement.executeStep());
-  return {statement.getColumn(0).getInt64()};
 }
 
 void put_axes(SQLite::Database& database, std::int64_t run, const std::vector<AxisLabel>& axes) {
@@ -40,6 +29,19 @@ void put_axes(SQLite::Database& database, std::int64_t run, const std::vector<Ax
     statement.exec();
     statement.reset();
   }
+}
+
+namespace {
+
+// A run of the sweep that has no wheel may have the same grains; only the shared bed stays in the
+// plan as long as a wheel run needs it.
+RunId bed_of_key(SQLite::Database& database, const std::string& key) {
+  SQLite::Statement statement(database,
+                              "SELECT id FROM run WHERE kind = 'bed' AND key = ? "
+                              "ORDER BY directory LIKE 'beds/%' DESC, id");
+  statement.bind(1, key);
+  GROUSER_CHECK(statement.executeStep());
+  return {statement.getColumn(0).getInt64()};
 }
 
 void insert_run(SQLite::Database& database, const NewRun& added) {
@@ -116,6 +118,7 @@ void Store::replace_plan(const PlanChange& change) {
     update_runs(database, change.runs);
     for (const NewRun& run : change.added) insert_run(database, run);
     for (const Recut& recut : change.recut) cut_anew(database, recut);
+    impl_->note(json_of(change));
     transaction.commit();
   });
 }

@@ -67,6 +67,7 @@ struct RunRow {
   std::string checkpoint;      ///< file name of the newest checkpoint
   std::string state_hash;      ///< of the state in it
   std::int64_t particles = 0;  ///< 0 = unknown
+  std::string engine_hash;     ///< of the program that its state was computed with; "" = any
 };
 
 struct ChunkRow {
@@ -108,10 +109,17 @@ struct AttemptRow {
   double checkpoint_seconds = 0.0;
   std::string checkpoint;
   std::string state_hash;
-  std::string engine_hash;       ///< of the engine's program file at submission
-  std::int64_t absences = 0;     ///< looks in a row at which the job was gone without an outcome
-  double absent_since = 0.0;     ///< time of the first of them [s]
-  std::int64_t absent_step = 0;  ///< step in progress.json then
+  std::string engine_hash;          ///< of the engine's program file at submission
+  std::int64_t absences = 0;        ///< looks in a row at which the job was gone without an outcome
+  double absent_since = 0.0;        ///< time of the first of them [s]
+  std::int64_t absent_step = 0;     ///< step in progress.json then
+  std::string host;                 ///< on which its job began, "" while not known
+  std::int64_t progress_step = 0;   ///< step in progress.json when it was last seen to grow
+  double progress_at = 0.0;         ///< and when that was [s]
+  double slowest_checkpoint = 0.0;  ///< the longest that one took [s]
+  double useful_seconds = 0.0;      ///< computing that is in the run's state [s]
+  double lost_seconds = 0.0;        ///< computing that is not [s]
+  double hung_seconds = 0.0;        ///< occupied without advancing [s]
 };
 
 }  // namespace grouser

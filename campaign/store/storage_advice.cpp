@@ -19,10 +19,9 @@ std::string storage_advice(int code) {
              "command goes on";
     case SQLITE_CORRUPT:
     case SQLITE_NOTADB:
-      return "the file is damaged: put a backup in its place, or move it and its -wal file away "
-             "and "
-             "submit again; nothing in the run directories is lost, runs go on from their "
-             "checkpoints";
+      return "the file is damaged: `grouser rebuild --yes -C DIR`, DIR being its directory, makes "
+             "it "
+             "anew from the journal beside it; nothing in the run directories is lost";
     case SQLITE_IOERR:
       return "the file system failed: see that it is mounted and has room, then the same command "
              "goes on";

@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "campaign/store/change.hpp"
 #include "campaign/store/database.hpp"
 #include "campaign/store/tables.hpp"
 
@@ -12,8 +13,11 @@ namespace {
 void add_axes(SQLite::Database& database, std::vector<RunRow>& runs) {
   std::map<std::int64_t, RunRow*> by_id;
   for (RunRow& run : runs) by_id[run.id.value] = &run;
-  SQLite::Statement statement(database,
-                              "SELECT run_id, axis, label FROM run_axis ORDER BY run_id, position");
+  // Of one run, the table is not read as a whole.
+  SQLite::Statement statement(database, std::string("SELECT run_id, axis, label FROM run_axis ") +
+                                            (runs.size() == 1 ? "WHERE run_id = ? " : "") +
+                                            "ORDER BY run_id, position");
+  if (runs.size() == 1) statement.bind(1, runs.front().id.value);
   while (statement.executeStep()) {
     const auto found = by_id.find(statement.getColumn(0).getInt64());
     if (found == by_id.end()) continue;
@@ -70,8 +74,31 @@ Store Store::open_read_only(const std::filesystem::path& file) {
 
 Store Store::open(const std::filesystem::path& file) {
   auto impl = std::make_unique<Impl>();
+  const auto journal = file.parent_path() / kJournalName;
+  std::error_code unreadable;
+  if (!std::filesystem::exists(file, unreadable) && Journal(journal).last_number() > 0)
+    throw FormatError(file.string() + ": is gone, but its journal is there; `grouser rebuild -C " +
+                      file.parent_path().string() + "` makes it anew");
   impl->database = open_database(file, true);
+  impl->journal = std::make_unique<Journal>(file.parent_path() / kJournalName);
+  impl->inode = inode_of(file);
   return Store(std::move(impl));
+}
+
+Store Store::open_for_replay(const std::filesystem::path& file) {
+  auto impl = std::make_unique<Impl>();
+  impl->database = open_database(file, true);
+  // A crash in between is no loss: it is begun anew.
+  impl->database->execAndGet("PRAGMA journal_mode = MEMORY");
+  impl->database->exec("PRAGMA synchronous = OFF");
+  impl->is_replay = true;
+  return Store(std::move(impl));
+}
+
+std::int64_t Store::change_number() const {
+  SQLite::Database& database = *impl_->database;
+  return guarded(database,
+                 [&] { return database.execAndGet("SELECT number FROM journal").getInt64(); });
 }
 
 bool Store::has_campaign() const {
@@ -120,6 +147,21 @@ std::vector<AttemptRow> Store::attempts(std::optional<RunId> run) const {
   return rows_of<AttemptRow>(*impl_->database, run, "number");
 }
 
+std::vector<AttemptRow> Store::ended_last(int count) const {
+  SQLite::Database& database = *impl_->database;
+  return guarded(database, [&] {
+    return select_rows<AttemptRow>(
+        database, "WHERE ended_at > 0.0 ORDER BY ended_at DESC, id DESC LIMIT ?", count);
+  });
+}
+
+double Store::occupied_seconds() const {
+  SQLite::Database& database = *impl_->database;
+  return guarded(database, [&] {
+    return database.execAndGet("SELECT total(occupied_seconds) FROM v_ledger").getDouble();
+  });
+}
+
 std::vector<AttemptRow> Store::active_attempts() const {
   SQLite::Database& database = *impl_->database;
   return guarded(database, [&] {
@@ -143,6 +185,7 @@ AttemptRow Store::add_attempt(const AttemptRow& attempt, const RunRow& run, cons
     row.id.value = insert_row(database, row);
     update_row(database, run);
     update_row(database, chunk);
+    impl_->note(json_of(attempt, run, chunk));
     transaction.commit();
     return row;
   });
@@ -161,6 +204,7 @@ void Store::apply(const Change& change) {
       GROUSER_CHECK(change.run.has_value());
       drop_planned_chunks(database, change.run->id);
     }
+    impl_->note(json_of(change));
     transaction.commit();
   });
 }

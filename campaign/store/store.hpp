@@ -63,6 +63,9 @@ struct Table {
   std::vector<std::vector<bool>> is_text;  ///< false for numbers and NULL; same shape as rows
 };
 
+/// Name of the journal in a campaign root; see rebuild.hpp.
+inline constexpr const char* kJournalName = "grouser.journal";
+
 /// Name of the frozen copy of the campaign's YAML in its root, beside the database.
 inline constexpr const char* kFrozenCampaign = "campaign.yaml";
 
@@ -80,6 +83,8 @@ class Store {
   static Store open_read_only(const std::filesystem::path& file);
   /// Opens for writing, creating or migrating the schema. Local.
   static Store open(const std::filesystem::path& file);
+  /// Opens an empty one that is filled from a journal by redo(); see rebuild.hpp. Local.
+  static Store open_for_replay(const std::filesystem::path& file);
   Store(Store&&) noexcept;
   Store& operator=(Store&&) noexcept;
   ~Store();
@@ -93,6 +98,10 @@ class Store {
   std::vector<ChunkRow> chunks(std::optional<RunId> run = std::nullopt) const;
   /// Of one run by number, or of all runs.
   std::vector<AttemptRow> attempts(std::optional<RunId> run = std::nullopt) const;
+  /// The `count` attempts that ended last, the last one first.
+  std::vector<AttemptRow> ended_last(int count) const;
+  /// How long all jobs together were at work; the views' occupied_seconds [s].
+  double occupied_seconds() const;
   /// Attempts for which a job may exist.
   std::vector<AttemptRow> active_attempts() const;
 
@@ -114,6 +123,11 @@ class Store {
   /// @return the attempt's number. @throws StorageError when the run already has an active attempt.
   AttemptRow add_attempt(const AttemptRow& attempt, const RunRow& run, const ChunkRow& chunk);
   void apply(const Change& change);
+
+  /// Does what a line of the journal tells; of a store opened for replay.
+  void redo(const std::string& line);
+  /// Of the last change, as the journal counts them.
+  std::int64_t change_number() const;
 
  private:
   struct Impl;

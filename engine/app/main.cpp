@@ -40,9 +40,11 @@ Case read_frozen_case(const Communicator& ranks, const std::filesystem::path& fi
   throw ConfigError(problems);
 }
 
-bool owns_fence(const EngineOptions& options) {
+// The fence's text without white space at its end, when its first word is the token; else "".
+std::string claim_of(const EngineOptions& options) {
   const auto text = read_file(options.run_directory / run_files::kFence);
-  return text && text->substr(0, text->find_last_not_of(" \n\r\t") + 1) == options.token;
+  if (!text || text->substr(0, text->find_first_of(" \n\r\t")) != options.token) return "";
+  return text->substr(0, text->find_last_not_of(" \n\r\t") + 1);
 }
 
 Outcome failed(const EngineOptions& options, EngineCode code, const std::string& reason) {
@@ -55,14 +57,13 @@ Outcome failed(const EngineOptions& options, EngineCode code, const std::string&
 
 // One of the two places that catch (the other is the campaign manager's main). What is caught here
 // was thrown by every rank alike.
-Outcome run(const Communicator& ranks, const EngineOptions& options,
-            Run::Clock::time_point started) {
+Outcome run(const Communicator& ranks, EngineOptions options, Run::Clock::time_point started) {
   try {
     const Case input = read_frozen_case(ranks, options.run_directory / run_files::kCase);
-    bool owns = false;
-    on_first_rank(ranks, [&] { owns = owns_fence(options); });
-    owns = ranks.from_first(owns ? 1 : 0) != 0;
-    if (!owns) return failed(options, EngineCode::kFenceLost, "another attempt owns the run");
+    on_first_rank(ranks, [&] { options.claim = claim_of(options); });
+    options.claim = ranks.from_first(options.claim);
+    if (options.claim.empty())
+      return failed(options, EngineCode::kFenceLost, "another attempt owns the run");
     return Run(ranks, options, input, started).execute();
   } catch (const ConfigError& error) {
     return failed(options, EngineCode::kInputRefused, error.what());
@@ -106,6 +107,9 @@ int main(int argc, char** argv) {
   app.add_option("--until-time", options.until_time, "simulated time at which the chunk ends [s]");
   app.add_option("--max-seconds", options.max_seconds,
                  "wall time after which the engine has ended [s]");
+  app.add_option("--checkpoint-seconds", options.checkpoint_seconds,
+                 "wall time between checkpoints, in place of output.checkpoint_interval [s]")
+      ->check(CLI::PositiveNumber);
   std::string restart = "auto";
   app.add_option("--restart", restart,
                  "auto: continue from the newest good checkpoint, or start; "

@@ -32,6 +32,7 @@ constexpr double kFinaliseSeconds = 1.0;
 
 // What ranks ask for in a step's message; the largest wins.
 constexpr double kNothing = 0.0;
+constexpr double kCheckpoint = 0.5;  // and to go on
 constexpr double kPause = 1.0;
 constexpr double kSignal = 2.0;
 constexpr double kStop = 3.0;
@@ -112,7 +113,7 @@ Run::Run(const Communicator& ranks, const EngineOptions& options, const Case& in
 
 bool Run::owns_fence() const {
   const auto text = read_file(options_.run_directory / run_files::kFence);
-  return text && text->substr(0, text->find_last_not_of(" \n\r\t") + 1) == options_.token;
+  return text && text->substr(0, text->find_last_not_of(" \n\r\t") + 1) == options_.claim;
 }
 
 void Run::begin() {
@@ -195,9 +196,11 @@ double Run::request() const {
   if (options_.max_seconds &&
       elapsed() + 1.5 * slowest_checkpoint_ + kFinaliseSeconds > *options_.max_seconds)
     return kPause;
+  const bool is_due =
+      options_.checkpoint_seconds && elapsed() - checkpointed_at_ >= *options_.checkpoint_seconds;
   std::error_code ignored;
   const fs::path stop = options_.run_directory / run_files::kStop;
-  if (step_ % 64 != 0 || !fs::exists(stop, ignored)) return kNothing;
+  if (step_ % 64 != 0 || !fs::exists(stop, ignored)) return is_due ? kCheckpoint : kNothing;
   // One that cannot be read asks all the same; rank 0 must not throw alone.
   std::string text;
   std::getline(std::ifstream(stop), text);
@@ -274,8 +277,10 @@ std::optional<EngineCode> Run::after_step(const World::StepResult& result) {
     reason_ = run_ends ? "the run is at its end" : "the chunk is at its end";
     return run_ends ? EngineCode::kFinished : EngineCode::kPaused;
   }
-  if (result.request > kNothing) return end_by_request(result.request);
-  if (step_ % checkpoint_steps_ == 0 && !write_checkpoint(false)) return EngineCode::kFenceLost;
+  if (result.request >= kPause) return end_by_request(result.request);
+  const bool is_due =
+      options_.checkpoint_seconds ? result.request == kCheckpoint : step_ % checkpoint_steps_ == 0;
+  if (is_due && !write_checkpoint(false)) return EngineCode::kFenceLost;
   return std::nullopt;
 }
 
@@ -365,6 +370,7 @@ bool Run::write_checkpoint(bool settled) {
   const double cost = ranks_.max(elapsed() - from);
   checkpoint_seconds_ += cost;
   slowest_checkpoint_ = std::max(slowest_checkpoint_, cost);
+  checkpointed_at_ = elapsed();
   return true;
 }
 
@@ -467,6 +473,7 @@ Outcome Run::outcome(EngineCode code) const {
   out.steps_done = step_ - first_step_;
   out.wall_seconds = elapsed();
   out.checkpoint_seconds = checkpoint_seconds_;
+  out.slowest_checkpoint_seconds = slowest_checkpoint_;
   out.compute_seconds = std::max(0.0, elapsed() - checkpoint_seconds_);
   out.ranks = ranks_.size();
   return out;

@@ -21,10 +21,14 @@ namespace grouser {
 struct EngineOptions {
   std::filesystem::path run_directory;
   std::string token;
+  std::string claim;  ///< text of the fence as it was found at the start: token, and perhaps how
+                      ///< often the batch system started the job over
   std::filesystem::path bed;
-  std::optional<double> until_time;   ///< [s]
-  std::optional<double> max_seconds;  ///< of wall time, from the engine's start [s]
-  bool must_continue = false;         ///< refuse to start anew
+  std::optional<double> until_time;          ///< [s]
+  std::optional<double> max_seconds;         ///< of wall time, from the engine's start [s]
+  std::optional<double> checkpoint_seconds;  ///< wall time between checkpoints, in place of the
+                                             ///< case's interval [s]
+  bool must_continue = false;                ///< refuse to start anew
 };
 
 /// Asks the running engine to write a checkpoint and end with kPaused; for signal handlers. Local.
@@ -99,6 +103,7 @@ class Run {
   double fall_time_ = 0.0;
   double checkpoint_seconds_ = 0.0;
   double slowest_checkpoint_ = 0.0;
+  double checkpointed_at_ = 0.0;  // elapsed()
   double reported_at_ = 0.0;
   std::int64_t reported_step_ = 0;
   double speed_ = 0.0;

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
 #include "base/units.hpp"
+#include "campaign/cli/command_list.hpp"
 #include "campaign/cli/drive_options.hpp"
 #include "campaign/cli/find.hpp"
 #include "campaign/cli/json_text.hpp"
 #include "campaign/cli/progress.hpp"
+#include "campaign/cli/verbs.hpp"
 #include "campaign/cli/wish.hpp"
 #include "driving.hpp"
+#include "schedulers/command.hpp"
 #include "schedulers/local.hpp"
 
 namespace grouser {
@@ -58,6 +62,40 @@ TEST(JsonText, ACaseIsNumbersInSiUnits) {
   EXPECT_FALSE(json.contains("wheel"));
   input.has_wheel = true;
   EXPECT_TRUE(case_json(input)["wheel"]["load"].is_number());
+}
+
+TEST(CommandList, CompletionsAndManualNameEveryVerbAndOption) {
+  CLI::App app("what it is", "grouser");
+  int code = 0;
+  add_submit(app, code);
+  add_status(app, code);
+  const auto verbs = list_verbs(app);
+  ASSERT_EQ(verbs.size(), 2u);
+  std::vector<std::string> texts{manual_page("what it is", verbs)};
+  for (const char* shell : {"bash", "zsh", "fish"})
+    texts.push_back(completion_script(verbs, shell));
+  for (std::string& text : texts) {
+    text.erase(std::remove(text.begin(), text.end(), '\\'), text.end());
+    for (const char* part : {"submit", "status", "dry-run", "watch"})
+      EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+  }
+}
+
+TEST(CommandList, CompletionsAreGoodShell) {
+  CLI::App app("what it is", "grouser");
+  int code = 0;
+  add_submit(app, code);
+  add_query(app, code);
+  TemporaryDirectory directory;
+  const auto file = directory.path() / "completion.bash";
+  write_atomic(file, completion_script(list_verbs(app), "bash"));
+  const auto done = run_command(
+      {"bash", "-c",
+       "source \"$0\"; COMP_WORDS=(grouser sub); COMP_CWORD=1; _grouser; echo \"${COMPREPLY[*]}\"; "
+       "COMP_WORDS=(grouser submit --dry); COMP_CWORD=2; _grouser; echo \"${COMPREPLY[*]}\"",
+       file.string()},
+      10.0);
+  EXPECT_EQ(done.out, "submit\n--dry-run\n") << done.err;
 }
 
 TEST(DriveOptions, SecondsAreNumbersThatTimeCanTake) {

@@ -164,6 +164,49 @@ TEST_F(Driving, TheEngineIsToldToStartOrGoOnAndHowLongItMayTake) {
   EXPECT_NE(script.find("'--max-seconds' '3420'"), std::string::npos) << script;
 }
 
+TEST_F(Driving, AnotherLookIsNeededWhileAnEndIsOpenOrARetryWaits) {
+  const auto needed = [&] {
+    return needs_another_look(store_->runs(), store_->active_attempts(), clock_.now());
+  };
+  tick();
+  tick();
+  EXPECT_FALSE(needed());
+  scheduler_.jobs.begin()->second.phase = JobPhase::kEnded;
+  scheduler_.jobs.begin()->second.end = JobEnd::kNodeFailed;
+  tick();
+  EXPECT_TRUE(needed());  // seen to have ended once
+  tick();
+  EXPECT_TRUE(needed());  // waits for its retry
+  tick(60.0);
+  EXPECT_FALSE(needed());
+}
+
+TEST_F(Driving, WhatIsMeasuredPlansTheNextJob) {
+  launch(small_campaign(kTwoSlips,
+                        "campaign: small\nscheduler: slurm\nresources: {walltime: 8h}\n"
+                        "planner: {checkpoints: true, walltime: true}\n"));
+  tick();
+  const std::string first = read_file(scheduler_.requests.back().script).value();
+  EXPECT_EQ(first.find("--checkpoint-seconds"), std::string::npos);
+  const RunRow bed = run("bed");
+  Outcome outcome;
+  outcome.token = store_->attempts(bed.id).back().token;
+  outcome.code = EngineCode::kPaused;
+  outcome.step = outcome.steps_done = 1000;
+  outcome.time = 1.0;
+  outcome.end_time = 2.0;
+  outcome.checkpoint = "c.h5";
+  outcome.compute_seconds = 600.0;
+  outcome.slowest_checkpoint_seconds = 20.0;
+  write_atomic(root_ / bed.directory / run_files::outcome(outcome.token), to_json(outcome));
+  scheduler_.jobs.begin()->second.phase = JobPhase::kEnded;
+  tick();
+  // The other half takes 600 s again: 1.5 x 600 + 120 + 2 x 20 s are two quarters of an hour.
+  const std::string second = read_file(scheduler_.requests.back().script).value();
+  EXPECT_NE(second.find("#SBATCH --time=0-00:30:00"), std::string::npos) << second;
+  EXPECT_NE(second.find("'--checkpoint-seconds'"), std::string::npos) << second;
+}
+
 TEST_F(Driving, ACancelIsPoliteFirst) {
   tick();
   ASSERT_TRUE(make_wish(*store_, run("bed"), Wish::kCancel, clock_.now()));

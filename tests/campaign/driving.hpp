@@ -31,17 +31,15 @@ class TestScheduler : public Scheduler {
  public:
   SubmitAnswer submit(const JobRequest& request) override {
     requests.push_back(request);
-    if (next_answer.kind != SubmitAnswer::Kind::kUnclear || takes_unclear)
-      jobs[request.name] = {request.name,
-                            "j" + std::to_string(requests.size()),
-                            JobPhase::kRunning,
-                            JobEnd::kNone,
-                            -1,
-                            ""};
+    const bool takes = next_answer.kind == SubmitAnswer::Kind::kAccepted ||
+                       (next_answer.kind == SubmitAnswer::Kind::kUnclear && takes_unclear);
+    const std::string id = "j" + std::to_string(requests.size());
+    if (takes)
+      for (const std::string& task : tasks_of(request))
+        jobs[request.name + task] = {request.name + task, id + task, JobPhase::kRunning,
+                                     JobEnd::kNone,       -1,        ""};
     SubmitAnswer answer = next_answer;
-    if (answer.kind == SubmitAnswer::Kind::kAccepted) answer.job = jobs[request.name].id;
-    if (answer.kind == SubmitAnswer::Kind::kBusy || answer.kind == SubmitAnswer::Kind::kRefused)
-      jobs.erase(request.name);
+    if (answer.kind == SubmitAnswer::Kind::kAccepted) answer.job = id;
     next_answer = {SubmitAnswer::Kind::kAccepted, "", ""};
     return answer;
   }
@@ -57,6 +55,18 @@ class TestScheduler : public Scheduler {
   std::string cancel(const JobKey& key, CancelMode mode) override {
     cancelled.emplace_back(key.name, mode);
     return "";
+  }
+
+  // "_0", "_1" ... of an array; "" of a single job.
+  static std::vector<std::string> tasks_of(const JobRequest& request) {
+    const std::string mark = "#SBATCH --array=0-";
+    const std::string text = read_file(request.script).value_or("");
+    const auto at = text.find(mark);
+    if (at == std::string::npos) return {""};
+    std::vector<std::string> tasks;
+    for (int i = 0; i <= std::stoi(text.substr(at + mark.size())); ++i)
+      tasks.push_back("_" + std::to_string(i));
+    return tasks;
   }
 
   std::vector<JobRequest> requests;

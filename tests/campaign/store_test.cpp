@@ -276,7 +276,7 @@ TEST_F(Database, AForeignOrDamagedFileIsRefused) {
     Store::open(directory_.path() / "text.db");
     FAIL() << "opened a text as a database";
   } catch (const StorageError& error) {
-    EXPECT_NE(std::string(error.what()).find("put a backup in its place"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("grouser rebuild --yes"), std::string::npos)
         << error.what();
   }
   EXPECT_THROW(Store::open_read_only(directory_.path() / "none.db"), StorageError);

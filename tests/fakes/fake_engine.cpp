@@ -9,6 +9,7 @@
 //   FAKE_END_ALWAYS=1          ... every time
 //   FAKE_NO_OUTCOME=1          leaves no outcome
 //   FAKE_HANG_AT=STEP          stops moving there
+//   FAKE_EAT_MEMORY_AT=STEP    takes 400 MB there
 //   FAKE_STUCK=1               pauses at once, without a step
 //
 // Two engines at once in one run directory leave the file `overlap` there.
@@ -76,7 +77,9 @@ class FakeEngine {
   }
 
   int run() {
-    if (!owns_fence()) return static_cast<int>(EngineCode::kFenceLost);
+    claim_ = read_file(options_.run_dir / run_files::kFence).value_or("");
+    if (claim_.substr(0, claim_.find(' ')) != options_.token)
+      return static_cast<int>(EngineCode::kFenceLost);
     watch_for_overlap();
     read_input();
     restore();
@@ -89,9 +92,7 @@ class FakeEngine {
   }
 
  private:
-  bool owns_fence() const {
-    return read_file(options_.run_dir / run_files::kFence) == options_.token;
-  }
+  bool owns_fence() const { return read_file(options_.run_dir / run_files::kFence) == claim_; }
 
   void watch_for_overlap() const {
     const int lock = ::open((options_.run_dir / "engine.lock").c_str(), O_RDWR | O_CREAT, 0666);
@@ -210,6 +211,8 @@ class FakeEngine {
       if (std::stoll(one) == state_.step && happens_once("kill-" + one)) ::raise(SIGKILL);
     if (variable("FAKE_HANG_AT") == std::to_string(state_.step))
       while (is_terminated == 0) ::pause();
+    if (variable("FAKE_EAT_MEMORY_AT") == std::to_string(state_.step))
+      memory_.assign(std::size_t{400} << 20, 'x');
     const std::string end = variable("FAKE_END_AT");
     const auto colon = end.find(':');
     if (colon != std::string::npos && std::stoll(end) == state_.step &&
@@ -268,6 +271,7 @@ class FakeEngine {
   }
 
   Options options_;
+  std::string claim_;
   bool has_faults_ = true;
   bool by_signal_ = false;
   useconds_t pace_ = 0;
@@ -279,6 +283,7 @@ class FakeEngine {
   std::int64_t checkpoint_every_ = 1;
   std::int64_t sequence_ = 0;
   CheckpointManifest last_checkpoint_;
+  std::string memory_;
   std::ofstream series_;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
 };

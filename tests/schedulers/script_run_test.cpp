@@ -57,6 +57,23 @@ TEST_F(ScriptRun, LeavesAtOnceWhenTheFenceNamesAnother) {
   EXPECT_FALSE(record(attempt_files::started(spec_.token)));
 }
 
+// Scenario 18: the batch system starts the job over under its own id while its first life, on a
+// node that was lost, is still at work.
+TEST_F(ScriptRun, S18ASecondLifeClaimsTheRunAndTheFirstLeavesNoWord) {
+  const auto script =
+      write_script("[ -e second ] || { touch second; bash attempts/abc123def456.sh; }; cat fence");
+  const auto first = run_command({"bash", script.string()}, 20.0);
+  EXPECT_EQ(first.code, 0) << first.err;
+  EXPECT_EQ(read_file(spec_.run_directory / "fence"), "abc123def456 1");
+  const auto exit = spec_.run_directory / attempt_files::exit(spec_.token);
+  ASSERT_TRUE(std::filesystem::exists(exit));  // of the second life
+  std::filesystem::remove(exit);
+  std::filesystem::remove(spec_.run_directory / "second");
+  write_atomic(spec_.run_directory / "fence", "zzz999zzz999");
+  EXPECT_EQ(run_command({"bash", script.string()}, 20.0).code, 22);
+  EXPECT_FALSE(std::filesystem::exists(exit));
+}
+
 TEST_F(ScriptRun, ReportsAnEngineThatIsMissing) {
   write_script("");
   spec_.engine = {"/no/such/engine"};

@@ -51,6 +51,20 @@ TEST(Scripts, AreWordForWordTheGoldenOnes) {
   expect_golden("local_plain.sh", make_local_script(plain_spec()));
   expect_golden("slurm_plain.sh", make_slurm_script(plain_spec()));
   expect_golden("slurm_full.sh", make_slurm_script(full_spec()));
+  ArraySpec array;
+  array.common = full_spec();
+  array.common.excluded_hosts = {"node7", "node12"};
+  array.name = "gabc123def456";
+  array.scripts = {"/scratch/it's here/a.sh", "/scratch/b.sh"};
+  array.at_once = 1;
+  expect_golden("slurm_array.sh", make_slurm_array_script(array));
+  JobSpec member = plain_spec();
+  member.token = member_token(member.token, 1);
+  member.is_array_member = true;
+  member.chain = "prologue";
+  member.root = "/scratch/runs/sweep";
+  member.partition = "batch";
+  expect_golden("slurm_member.sh", make_slurm_script(member));
   JobSpec spec = full_spec();
   spec.qos.clear();
   spec.launcher.clear();
@@ -79,6 +93,29 @@ TEST(Scripts, OfEveryKindAreGoodShell) {
     const auto result = run_command({"bash", "-n", file.string()}, 10.0);
     EXPECT_EQ(result.code, 0) << name << ": " << result.err;
   }
+}
+
+TEST(Scripts, OfChainsAndArraysAreGoodShell) {
+  TemporaryDirectory directory;
+  const auto file = directory.path() / "script.sh";
+  for (const std::string& name : scheduler_names())
+    for (const char* chain : {"prologue", "epilogue"}) {
+      JobSpec spec = full_spec();
+      spec.root = "/scratch/it's here";
+      spec.chain = chain;
+      write_atomic(file, scheduler_kind(name).make_script(spec));
+      const auto result = run_command({"bash", "-n", file.string()}, 10.0);
+      EXPECT_EQ(result.code, 0) << name << ": " << result.err;
+      EXPECT_EQ(read_file(file)->find("/scratch/it'\\''s here/wake.sh") != std::string::npos,
+                name != "local" || std::string(chain) == "epilogue")
+          << name << " " << chain;
+    }
+}
+
+TEST(Scripts, TheMembersOfAnArrayShareAJobName) {
+  EXPECT_EQ(job_name(member_token("123456789abc", 17)), "g123456789abc_17");
+  // A letter n at its end makes no member of a plain token.
+  EXPECT_EQ(job_name("12345678nabn"), "g12345678nabn");
 }
 
 TEST(Scripts, JobNamesFitOldBatchSystems) {

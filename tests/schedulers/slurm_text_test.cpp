@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "schedulers/slurm.hpp"
 
@@ -58,10 +59,12 @@ TEST(SlurmText, AnEmptyQueueIsAnAnswerAndGarbageIsNone) {
 }
 
 TEST(SlurmText, SacctEndsAreToldApart) {
-  const auto jobs = parse_sacct(
-      "1|a|COMPLETED|0:0\n2|b|FAILED|7:0\n3|c|FAILED|0:9\n4|d|CANCELLED by 1000|0:0\n"
-      "5|e|TIMEOUT|0:0\n6|f|PREEMPTED|0:0\n7|g|NODE_FAIL|0:0\n8|h|OUT_OF_MEMORY|0:125\n"
-      "9|i|RUNNING|0:0\n");
+  const auto jobs =
+      parse_sacct("1|a|COMPLETED|0:0\n2|b|FAILED|7:0\n3|c|FAILED|0:9\n4|d|CANCELLED by " +
+                  std::to_string(::getuid()) +
+                  "|0:0\n"
+                  "5|e|TIMEOUT|0:0\n6|f|PREEMPTED|0:0\n7|g|NODE_FAIL|0:0\n8|h|OUT_OF_MEMORY|0:125\n"
+                  "9|i|RUNNING|0:0\n");
   ASSERT_TRUE(jobs);
   const std::vector<JobEnd> ends{JobEnd::kDone,       JobEnd::kFailed,      JobEnd::kKilled,
                                  JobEnd::kCancelled,  JobEnd::kTimeout,     JobEnd::kPreempted,
@@ -71,6 +74,25 @@ TEST(SlurmText, SacctEndsAreToldApart) {
   EXPECT_EQ(jobs->at(1).exit_code, 7);
   EXPECT_EQ(jobs->at(2).exit_code, 137);
   EXPECT_EQ(jobs->at(8).exit_code, -1);
+}
+
+TEST(SlurmText, TasksOfAnArrayAreToldApartByTheirIndex) {
+  const auto queue = parse_squeue("7_0|gabc|RUNNING|None\n7_12|gabc|PENDING|JobArrayTaskLimit\n");
+  ASSERT_TRUE(queue);
+  EXPECT_EQ(queue->at(1).name, "gabc_12");
+  EXPECT_EQ(queue->at(1).id, "7_12");
+  // Those that wait stand on one line, which the queue has better.
+  const auto books = parse_sacct("7_0|gabc|FAILED|3:0\n7_[1-12%2]|gabc|PENDING|0:0\n");
+  ASSERT_TRUE(books);
+  ASSERT_EQ(books->size(), 1u);
+  EXPECT_EQ(books->at(0).name, "gabc_0");
+  EXPECT_EQ(parse_squeue("7_x|gabc|RUNNING|None\n"), std::nullopt);
+}
+
+TEST(SlurmText, SomebodyElsesCancelIsNotOurs) {
+  const auto jobs = parse_sacct("4|d|CANCELLED by " + std::to_string(::getuid() + 1) + "|0:0\n");
+  ASSERT_TRUE(jobs);
+  EXPECT_EQ(jobs->front().end, JobEnd::kDrained);
 }
 
 TEST(SlurmText, SacctGarbageIsNoAnswer) {

@@ -5,9 +5,20 @@ token=abc123def456
 cd -- '/scratch/runs/sweep/runs/slip_20-s1-01234567' || exit 40
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 
+# A job that the batch system started over claims the run anew, so that its earlier life, which a
+# lost node may still carry on, publishes nothing more.
+claim=$token
 owns_run() {
-  [ "$(cat fence)" = "$token" ]
+  [ "$(cat fence)" = "$claim" ]
 }
+if [ -e "attempts/$token.started" ]; then
+  read -r owner life <fence || true
+  claim="$token $((${life:-0} + 1))"
+  if [ "$owner" = "$token" ]; then
+    printf '%s' "$claim" >"fence.$token" && mv -f "fence.$token" fence
+    rm -f "outcome-$token.json" "attempts/$token.exit" stop
+  fi
+fi
 
 # The batch system wants the job to end: the engine is asked by its stop file, unless the run has
 # gone over to another attempt.
@@ -41,5 +52,7 @@ done
 wait "$engine" 2>/dev/null
 last=$?
 [ "$last" -eq 127 ] || code=$last
-record exit "$code"
+if owns_run; then
+  record exit "$code"
+fi
 exit "$code"

@@ -1,0 +1,63 @@
+#!/bin/bash
+#SBATCH --job-name=gabc123def456_1
+#SBATCH --ntasks=1
+#SBATCH --partition=batch
+#SBATCH --no-requeue
+# Attempt abc123def456n1 of run slip_20-s1, campaign sweep; written by grouser.
+
+token=abc123def456n1
+cd -- '/scratch/runs/sweep/runs/slip_20-s1-01234567' || exit 40
+exec >>attempts/abc123def456n1.log 2>&1
+
+# A job that the batch system started over claims the run anew, so that its earlier life, which a
+# lost node may still carry on, publishes nothing more.
+claim=$token
+owns_run() {
+  [ "$(cat fence)" = "$claim" ]
+}
+if [ -e "attempts/$token.started" ]; then
+  read -r owner life <fence || true
+  claim="$token $((${life:-0} + 1))"
+  if [ "$owner" = "$token" ]; then
+    printf '%s' "$claim" >"fence.$token" && mv -f "fence.$token" fence
+    rm -f "outcome-$token.json" "attempts/$token.exit" stop
+  fi
+fi
+
+# The batch system wants the job to end: the engine is asked by its stop file, unless the run has
+# gone over to another attempt.
+ask_to_stop() {
+  if owns_run && [ ! -e stop ]; then
+    echo signal >stop
+  fi
+}
+trap ask_to_stop TERM USR1
+
+# The word of this script about itself; readers see a whole record or none.
+record() {
+  printf '{"token": "%s", "job": "%s", "host": "%s", "code": %d}\n' \
+    "$token" "${SLURM_ARRAY_TASK_ID:+${SLURM_ARRAY_JOB_ID}_}${SLURM_ARRAY_TASK_ID:-${SLURM_JOB_ID:-}}" "$(uname -n)" "$2" >"attempts/$token.$1.tmp" &&
+    mv -f "attempts/$token.$1.tmp" "attempts/$token.$1"
+}
+
+if ! owns_run; then
+  echo "superseded: another attempt owns this run" >&2
+  exit 22
+fi
+record started -1
+sbatch --dependency="afterany:$SLURM_JOB_ID" --job-name=gwake --ntasks=1 --time=10 --output=/dev/null --partition='batch' '/scratch/runs/sweep/wake.sh' >/dev/null || echo "no successor could be queued" >&2
+mpirun -n 1 '/opt/grouser/bin/grouser-engine' '--run-dir' '/scratch/runs/sweep/runs/slip_20-s1-01234567' '--token' 'abc123def456' &
+engine=$!
+code=127
+# A trapped signal ends `wait` early: wait again until the engine is gone.
+while kill -0 "$engine" 2>/dev/null; do
+  wait "$engine"
+  code=$?
+done
+wait "$engine" 2>/dev/null
+last=$?
+[ "$last" -eq 127 ] || code=$last
+if owns_run; then
+  record exit "$code"
+fi
+exit "$code"
