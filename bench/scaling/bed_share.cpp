@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "engine/core/halo.hpp"
+
 namespace grouser::bench {
 namespace {
 
@@ -48,6 +50,8 @@ BedShare bed_share(const ScalingBed& bed, const Decomposition& boxes, int rank) 
         ++share.count;
         if (box.depth(grain.position) > 2.0 * bed.reach()) continue;
         grain.radius = 0.5 * diameter(chance(grain.id, 6));
+        if (box.depth(grain.position) < Halo::reach(grain, bed.largest_radius, bed.skin))
+          ++share.outer;
         share.grains.push_back(grain);
       }
   return share;

@@ -27,6 +27,7 @@ struct ScalingBed {
 struct BedShare {
   std::vector<Particle> grains;  ///< within two reaches of a face of the rank's box
   std::int64_t count = 0;        ///< of all
+  std::int64_t outer = 0;        ///< of those that may have ghosts for partners
 };
 
 /// Grains of this rank's box: one at a random place of each cell of a lattice, which spreads them

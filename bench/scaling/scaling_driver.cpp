@@ -129,7 +129,7 @@ void run_steps(const Communicator& ranks, const Costs& costs) {
   const double count = static_cast<double>(rank.share.count);
   const double ghosts = rank.ghosts();
   const double twice = kPairShare * done_twice(rank.bed, rank.boxes.box(ranks.rank()));
-  const double outer = costs.overlaps ? static_cast<double>(rank.halo.sent_grains()) : count;
+  const double outer = costs.overlaps ? static_cast<double>(rank.share.outer) : count;
   const double core = costs.step / costs.cores;
   time.rebuild += costs.lists / costs.cores * (count + ghosts) + kHaloSeconds * ghosts;
   ranks.barrier();
@@ -163,6 +163,7 @@ void run_steps(const Communicator& ranks, const Costs& costs) {
   const double rebuild = ranks.max(time.rebuild);
   const double ghosts_mean = mean(ranks, 1e-3 * ghosts) * 1e3;
   const double twice_mean = mean(ranks, core * twice);
+  const double outer_mean = mean(ranks, 1e-3 * outer) * 1e3;
   const double neighbours = mean(ranks, static_cast<double>(rank.neighbours.size()));
   const double halo = mean(ranks, time.halo);
   const double computing = mean(ranks, time.compute);
@@ -170,11 +171,13 @@ void run_steps(const Communicator& ranks, const Costs& costs) {
   if (ranks.rank() != 0) return;
   std::printf(
       "{\"ranks\": %d, \"cores\": %d, \"grains\": %.0f, \"most\": %.0f, \"ghosts\": %.0f, "
-      "\"neighbours\": %.2f, \"step_cost\": %g, \"lists_cost\": %g, \"step\": %.9f, "
+      "\"neighbours\": %.2f, \"outer\": %.0f, \"step_cost\": %g, \"lists_cost\": %g, \"step\": "
+      "%.9f, "
       "\"compute\": %.9f, \"twice\": %.9f, \"packing\": %.9f, \"halo\": %.9f, \"agree\": %.9f, "
       "\"rebuild\": %.9f, \"exchange\": %.9f}\n",
-      ranks.size(), costs.cores, all, most, ghosts_mean, neighbours, costs.step, costs.lists, step,
-      computing, twice_mean, kPackingSeconds * ghosts_mean, halo, agree, rebuild, exchange);
+      ranks.size(), costs.cores, all, most, ghosts_mean, neighbours, outer_mean, costs.step,
+      costs.lists, step, computing, twice_mean, kPackingSeconds * ghosts_mean, halo, agree, rebuild,
+      exchange);
   std::fflush(stdout);
 }
 
@@ -182,11 +185,11 @@ void run_steps(const Communicator& ranks, const Costs& costs) {
 // simulator's, is that of packing, copying and making all ghosts.
 void measure_packing(const Communicator& ranks) {
   Rank rank(ranks);
-  // Two cubes, each with as many grains as a rank of 3 072 has, side by side.
-  rank.bed.high = {0.0698, 0.0349, 0.0349};
+  // Plates side by side, so large that what the simulator itself takes for a message is little.
+  rank.bed.high = {0.0698, 0.3490, 0.3490};
   rank.bed.count_x = 46;
-  rank.bed.count_y = 23;
-  rank.bed.count_z = 23;
+  rank.bed.count_y = 230;
+  rank.bed.count_z = 230;
   rank.boxes = Decomposition::even({}, rank.bed.high, ranks.size());
   rank.share = bed_share(rank.bed, rank.boxes, ranks.rank());
   rank.owned = rank.share.grains.size();

@@ -62,21 +62,18 @@ void Halo::build(const Communicator& ranks, const Decomposition& boxes,
                  std::vector<Particle>& particles) {
   owned_ = particles.size();
   neighbours_.clear();
-  // A hair more, so that rounding at a box's face loses no pair.
-  const auto reach = [&](const Particle& p) {
-    return (p.radius + largest_radius + skin) * (1.0 + 1e-9);
-  };
   std::vector<std::uint32_t> outer;
   const Box& own = boxes.box(ranks.rank());
   for (std::uint32_t i = 0; i < owned_; ++i)
-    if (own.depth(particles[i].position) < reach(particles[i])) outer.push_back(i);
+    if (own.depth(particles[i].position) < reach(particles[i], largest_radius, skin))
+      outer.push_back(i);
   std::vector<Bytes> out;
   for (const int rank : neighbours) {
     Neighbour& neighbour = neighbours_.emplace_back(Neighbour{rank, {}, 0});
     Bytes& records = out.emplace_back();
     const Box& box = boxes.box(rank);
     for (const std::uint32_t i : outer) {
-      const double far = reach(particles[i]);
+      const double far = reach(particles[i], largest_radius, skin);
       if (box.distance2(particles[i].position) >= far * far) continue;
       neighbour.sent.push_back(i);
       append_bytes(records, &particles[i], 1);
@@ -84,7 +81,6 @@ void Halo::build(const Communicator& ranks, const Decomposition& boxes,
   }
   const std::vector<Bytes> in = ranks.exchange_with(neighbours, out);
   std::size_t sent = 0;
-  std::vector<bool> is_sent(owned_, false);
   for (std::size_t n = 0; n < neighbours_.size(); ++n) {
     Neighbour& neighbour = neighbours_[n];
     std::vector<Particle> theirs(in[n].size() / sizeof(Particle));
@@ -94,7 +90,6 @@ void Halo::build(const Communicator& ranks, const Decomposition& boxes,
     for (std::size_t k = 0; k < neighbour.sent.size(); ++k)
       if (near.is_own_near[k] != 0) neighbour.sent[kept++] = neighbour.sent[k];
     neighbour.sent.resize(kept);
-    for (const std::uint32_t i : neighbour.sent) is_sent[i] = true;
     neighbour.sent.shrink_to_fit();
     sent += kept;
     const std::size_t before = particles.size();
@@ -103,7 +98,6 @@ void Halo::build(const Communicator& ranks, const Decomposition& boxes,
     neighbour.ghosts = particles.size() - before;
   }
   out_.resize(sent);
-  sent_grains_ = static_cast<std::size_t>(std::count(is_sent.begin(), is_sent.end(), true));
 }
 
 void Halo::start(std::vector<Particle>& particles) {

@@ -24,13 +24,16 @@ class Halo {
              const std::vector<int>& neighbours, double largest_radius, double skin,
              std::vector<Particle>& particles);
 
+  /// Grains that are deeper than this in their rank's box have no ghosts for partners [m]. Local.
+  static double reach(const Particle& p, double largest_radius, double skin) {
+    // A hair more, so that rounding at a box's face loses no pair.
+    return (p.radius + largest_radius + skin) * (1.0 + 1e-9);
+  }
+
   /// Begins to renew the ghosts. Until finish() nobody may look at them, nor may `particles` move
   /// in memory; owned grains may be looked at and moved on. Collective.
   void start(std::vector<Particle>& particles);
   void finish() { messages_.finish(); }
-
-  /// Owned grains that other ranks have ghosts of. Local.
-  std::size_t sent_grains() const { return sent_grains_; }
 
  private:
   struct Neighbour {
@@ -42,7 +45,6 @@ class Halo {
   Messages messages_;
   std::vector<Neighbour> neighbours_;
   std::size_t owned_ = 0;
-  std::size_t sent_grains_ = 0;
   std::vector<Particle> out_;
 };
 

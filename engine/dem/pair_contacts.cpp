@@ -152,11 +152,17 @@ void PairContacts::evaluate(const Law& law, const Rolling& rolling, const double
 template <class Law, class Rolling>
 double PairContacts::sweep(const Law& law, const Rolling& rolling,
                            const std::vector<Particle>& particles, double time_step,
-                           const Finish& finish) {
+                           const Finish& finish, const std::function<void()>& fetch_ghosts) {
   const double* const grains = particles.empty() ? nullptr : &particles[0].position.x;
+  const auto first = std::find_if(plan_.chunks.begin(), plan_.chunks.end(),
+                                  [](const SweepPlan::Chunk& chunk) { return chunk.has_ghosts; });
+  const auto first_with_ghosts = static_cast<std::size_t>(first - plan_.chunks.begin());
+  const bool may_wait = threads_.count() == 1;  // else other threads are there already
+  if (!may_wait) fetch_ghosts();
   threads_.run([&](std::size_t share) {
     Pack largest;
     for (std::size_t c = plan_.shares[share].first; c < plan_.shares[share].last; ++c) {
+      if (may_wait && c == first_with_ghosts) fetch_ghosts();
       evaluate(law, rolling, grains, c, time_step, largest);
       if (!plan_.chunks[c].is_late) hand_over(share, c, finish);
     }
@@ -169,6 +175,7 @@ double PairContacts::sweep(const Law& law, const Rolling& rolling,
       for (std::size_t c = plan_.shares[share].first; c < plan_.shares[share].last; ++c)
         if (plan_.chunks[c].is_late) hand_over(share, c, finish);
     });
+  if (may_wait && first_with_ghosts == plan_.chunks.size()) fetch_ghosts();
   double result = 0.0;
   for (const Desk& desk : desks_) result = std::max(result, desk.largest);
   return result;
@@ -205,12 +212,18 @@ void PairContacts::add_up(std::size_t first, std::size_t last, double* forces,
 }
 
 double PairContacts::sweep(const std::vector<Particle>& particles, double time_step,
-                           const Finish& finish) {
+                           const Finish& finish, const std::function<void()>& fetch_ghosts) {
   // Two grains may have come closer by twice the way of one; a hair more for rounding.
-  if (2.0 * travel_ * (1.0 + 1e-9) >= gap_) refresh(particles);
+  const bool needs_slots = 2.0 * travel_ * (1.0 + 1e-9) >= gap_;
+  if (needs_slots) {
+    fetch_ghosts();
+    refresh(particles);
+  }
+  const std::function<void()> nothing = [] {};
   return std::visit(
       [&](const auto& law, const auto& rolling) {
-        return sweep(law, rolling, particles, time_step, finish);
+        return sweep(law, rolling, particles, time_step, finish,
+                     needs_slots ? nothing : fetch_ghosts);
       },
       law_, rolling_);
 }

@@ -75,8 +75,11 @@ class PairContacts {
   using Finish = std::function<void(const Ready&)>;
 
   /// Evaluates all contacts and hands over all owned grains.
+  /// @param fetch_ghosts called once, on the first thread, before a ghost is looked at: as late as
+  ///                     the order of grains allows, with one thread
   /// @return largest overlap over the smaller radius of the pair [1]
-  double sweep(const std::vector<Particle>& particles, double time_step, const Finish& finish);
+  double sweep(const std::vector<Particle>& particles, double time_step, const Finish& finish,
+               const std::function<void()>& fetch_ghosts);
 
   /// Whether a grain was much faster than the mean when the slots were made.
   bool is_fast(std::size_t grain) const { return is_fast_[grain] != 0; }
@@ -140,7 +143,7 @@ class PairContacts {
 
   template <class Law, class Rolling>
   double sweep(const Law& law, const Rolling& rolling, const std::vector<Particle>& particles,
-               double time_step, const Finish& finish);
+               double time_step, const Finish& finish, const std::function<void()>& fetch_ghosts);
   template <class Law, class Rolling>
   void evaluate(const Law& law, const Rolling& rolling, const double* grains, std::size_t chunk,
                 double time_step, Pack& largest);

@@ -103,13 +103,18 @@ void PairContacts::make_slots(const std::vector<Particle>& particles, std::size_
     SweepPlan::Chunk& chunk = plan_.chunks[first / kChunk];
     const std::size_t before = scratch.size();
     std::size_t front = first;
+    chunk.has_ghosts = false;
     for (std::size_t i = first; i < std::min(first + kChunk, last_of(b)); ++i) {
       const std::size_t at = i - b * kBlock;
       for (std::uint32_t k = block.start[at]; k < block.start[at + 1]; ++k) {
         const std::size_t j = block.partner[k];
         if (!needs_slot(particles, i, j)) continue;
         scratch.add(particles, i, j, of(i, j));
-        if (j < owned_) front = std::max(front, j);
+        if (j < owned_) {
+          front = std::max(front, j);
+        } else {
+          chunk.has_ghosts = true;
+        }
       }
     }
     scratch.pad();

@@ -17,9 +17,9 @@ namespace grouser {
 ///   been evaluated: nobody else needs its grains' positions any more;
 /// - the results of a chunk must stay until all chunks that look back to it have been added up.
 /// Each share is a run of neighbouring chunks which one thread evaluates in order. A chunk that
-/// looks back into another share is late: it is added up when all shares have been evaluated. (So
-/// would be a chunk that waits for something else, such as ghosts on their way.) All that late
-/// chunks look back to is kept; other results stand in a ring that fits the nearest caches.
+/// looks back into another share is late: it is added up when all shares have been evaluated. All
+/// that late chunks look back to is kept; other results stand in a ring that fits the nearest
+/// caches.
 struct SweepPlan {
   static constexpr std::size_t kChunk = 256;  ///< grains
 
@@ -29,6 +29,7 @@ struct SweepPlan {
     std::uint32_t back = 0;   ///< first chunk with slots that act on grains of this one
     std::uint32_t place = 0;  ///< of the first slot's result among all results
     bool is_late = false;
+    bool has_ghosts = false;  ///< whether a slot has one
   };
   struct Share {
     std::size_t first = 0;  ///< chunks first ... last-1

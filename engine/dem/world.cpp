@@ -97,7 +97,6 @@ World::StepResult World::step(double request) {
     rebuild();
   } else {
     halo_.start(particles_);
-    halo_.finish();
   }
   const double begun = thread_seconds();
   // Bodies have moved since the last step at the velocity they have now.
@@ -123,16 +122,20 @@ World::StepResult World::step(double request) {
                                            load.force_moment_y, load.couple_y});
   }
   std::vector<Motion> motions(threads_.count());
-  overlap = std::max(
-      overlap, pairs_.sweep(particles_, settings_.time_step, [&](const PairContacts::Ready& ready) {
-        move(ready, motions[ready.share]);
-      }));
+  const auto move_on = [&](const PairContacts::Ready& ready) { move(ready, motions[ready.share]); };
+  double waited = 0.0;
+  const auto fetch_ghosts = [&] {
+    waited -= thread_seconds();
+    halo_.finish();
+    waited += thread_seconds();
+  };
+  overlap = std::max(overlap, pairs_.sweep(particles_, settings_.time_step, move_on, fetch_ghosts));
   Motion motion;
   for (const Motion& one : motions) motion.add(one);
   totals.sums.emplace_back().add(std::isfinite(motion.sum) ? motion.sum : 0.0);
   totals.maxima = {std::sqrt(motion.fastest2), std::sqrt(motion.slow2), overlap,
                    motion.is_lost ? 1.0 : 0.0, request};
-  busy_ += thread_seconds() - begun;
+  busy_ += thread_seconds() - begun - waited;
   ++busy_steps_;
   ranks_.combine(totals);
   for (std::size_t b = 0; b < bodies_.size(); ++b)

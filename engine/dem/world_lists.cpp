@@ -11,6 +11,9 @@ namespace {
 
 constexpr std::uint32_t kGone = PairContacts::kGone;
 
+// Up to so many grains a rank's pair results fit a cache. More grains have little to wait for.
+constexpr std::size_t kFewGrains = 32768;
+
 }  // namespace
 
 void World::rebuild() {
@@ -157,7 +160,8 @@ void World::keep_histories(std::uint32_t grain, std::int64_t id, ByteReader read
 }
 
 // New numbers of the grains owned till now, kGone for those that leave, then of the arrivals: cell
-// by cell, so that neighbours in space are neighbours in memory, and by id within a cell.
+// by cell, so that neighbours in space are neighbours in memory, and by id within a cell. Where
+// there are few, those that may have ghosts come last: the others need not wait for ghosts.
 std::vector<std::uint32_t> World::numbers_by_cell(const std::vector<bool>& leaves,
                                                   const std::vector<Arrival>& arrivals) const {
   const std::size_t all = owned_ + arrivals.size();
@@ -173,9 +177,16 @@ std::vector<std::uint32_t> World::numbers_by_cell(const std::vector<bool>& leave
     high = {std::max(high.x, at.x), std::max(high.y, at.y), std::max(high.z, at.z)};
   }
   const CellGrid grid(low, high, 2.0 * settings_.largest_radius + settings_.skin, 2 * all + 64);
-  const auto cell_of = [&](std::size_t i) { return grid.index(grid.cell_of(grain(i).position)); };
+  const bool parts = ranks_.size() > 1 && all <= kFewGrains;
+  const Box& box = boxes_.box(ranks_.rank());
+  const auto cell_of = [&](std::size_t i) {
+    const Particle& p = grain(i);
+    const bool is_last =
+        parts && box.depth(p.position) < Halo::reach(p, settings_.largest_radius, settings_.skin);
+    return grid.index(grid.cell_of(p.position)) + (is_last ? grid.cells() : 0);
+  };
   // Counted two places up, so that filling a cell moves its mark to where the next one begins.
-  std::vector<std::uint32_t> first(grid.cells() + 2, 0);
+  std::vector<std::uint32_t> first((parts ? 2 : 1) * grid.cells() + 2, 0);
   std::size_t staying = 0;
   for (std::size_t i = 0; i < all; ++i) {
     if (!stays(i)) continue;

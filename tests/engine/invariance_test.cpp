@@ -109,6 +109,43 @@ TEST(Invariance, TrajectoryIsTheSameHoweverOftenAndWhereverSpaceIsCut) {
   EXPECT_LT(Communicator().max(static_cast<std::int64_t>(least)), 120);
 }
 
+// A block of many grains that is pressed together, so that ranks have whole chunks of grains that
+// touch no ghost and go on while ghosts are still on their way.
+World pressed(const Communicator& ranks) {
+  WorldSettings settings = small_settings();
+  settings.rolling = "elastic_plastic";
+  settings.largest_radius = 2.5e-3;
+  settings.skin = 0.3e-3;
+  settings.time_step = 5e-6;
+  settings.top = 0.06;
+  World world(ranks, settings);
+  add_box(world, {0.5, 0.4, 0.05});
+  constexpr int kSide = 20;
+  constexpr int kHeight = 12;
+  for (int i = 0; i < kSide * kSide * kHeight; ++i) {
+    const auto item = static_cast<std::uint64_t>(i);
+    Particle p = sphere(i, 2e-3 + 5e-4 * random_unit(12, item, 0),
+                        {0.005 * (i % kSide + 0.5), 0.005 * (i / kSide % kSide + 0.5),
+                         0.005 * (i / (kSide * kSide) + 0.5)});
+    p.velocity = 20.0 * (Vec3{0.05, 0.05, 0.03} - p.position);
+    p.velocity.x += random_unit(12, item, 1) - 0.5;
+    if (world.owns(p.position)) world.add_particle(p);
+  }
+  return world;
+}
+
+TEST(Invariance, GrainsThatDoNotWaitForGhostsGiveTheSameBits) {
+  World together = pressed(Communicator());
+  World alone = pressed(Communicator::alone());
+  for (int i = 0; i < 300; ++i) ASSERT_EQ(together.step().fault, Fault::kNone);
+  for (int i = 0; i < 300 && Communicator().rank() == 0; ++i)
+    ASSERT_EQ(alone.step().fault, Fault::kNone);
+  const auto expected = static_cast<std::uint64_t>(
+      Communicator().from_first(static_cast<std::int64_t>(hash_of(alone))));
+  EXPECT_EQ(hash_of(together), expected);
+  EXPECT_GT(together.contacts(), 2000);
+}
+
 // A wheel that comes to a grain at rest: by driving, or by a grouser that turns towards it. Nothing
 // but the wheel's own motion can tell the lists that it is near.
 Particle struck_by(double speed, double spin, const Vec3& grain, double skin) {
