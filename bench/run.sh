@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Builds the benchmarks and runs one of them; see docs/performance/.
 #   bench/run.sh dem [--json FILE] [--quick]
+#   bench/run.sh lbm [--json FILE] [--cells N] [--rounds N] [--others]
 #   bench/run.sh scaling [--json FILE] [--ranks N,N,...] [--svg FILE]
 #   bench/run.sh reliability [--json FILE] [--manager-kills N] [--engine-kills N] [--no-space N]
 #   bench/run.sh campaign [--json FILE] [--runs N] [--chunks N] [--active N]
 # reliability: kills managers and engines, fills disks; campaign: the manager on 10 000 runs.
 # dem: the DEM engine beside LAMMPS, LIGGGHTS and YADE on one settled bed. The first call prepares
 # the bed (some ten minutes on two cores) and keeps it under build/bench/data.
+# lbm: plain flow on a lattice beside the limit of bandwidth of the same run.
 # scaling: the engine's messages on 64 to 4 096 simulated ranks; needs Debian's libsimgrid-dev.
 # GROUSER_BENCH_BUILD: another build folder.
 set -euo pipefail
@@ -44,10 +46,11 @@ if [ "${1:-}" = reliability ] || [ "${1:-}" = campaign ]; then
   python3 "$root/bench/$bench/run.py" "${programs[@]}" "$@"
   exit 0
 fi
-if [ "${1:-}" != dem ]; then
-  sed -n '3,13s/^# \{0,1\}//p' -- "${BASH_SOURCE[0]}" >&2
+if [ "${1:-}" != dem ] && [ "${1:-}" != lbm ]; then
+  sed -n '3,12s/^# \{0,1\}//p' -- "${BASH_SOURCE[0]}" >&2
   exit 2
 fi
+kind=$1
 shift
 
 export OMP_NUM_THREADS=1
@@ -78,7 +81,16 @@ prepare_wheel() {
   mpi 2 "$build/bin/dem_bench" sink "$bed" "$wheel"
 }
 
+lbm() {
+  cmake --build "$build" --target lbm_bench >&2
+  python3 "$root/bench/lbm/compare.py" "$build/bin/lbm_bench" "$@"
+}
+
 (cd -- "$root" && cmake --preset release -B "$build" -DGROUSER_BENCH=ON) >&2
+if [ "$kind" = lbm ]; then
+  lbm "$@"
+  exit 0
+fi
 cmake --build "$build" --target grouser-engine dem_bench >&2
 bed=$build/data/bed-$(hash_of "$root/bench/dem/bed.yaml")
 wheel=$build/data/wheel-$(hash_of "$root"/bench/dem/{bed,wheel}.yaml "$root"/bench/*.cpp)
