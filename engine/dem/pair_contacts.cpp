@@ -111,7 +111,9 @@ void PairContacts::note_speeds(double slow, double mean, double time_step) {
 }
 
 // Asks for the second grains of a pack that is evaluated soon; the first ones follow one another.
-inline void fetch_ahead(const double* grains, const PairSlots& slots, std::size_t slot) {
+// Called, it would be taken for a function without effect and left out.
+[[gnu::always_inline]] inline void fetch_ahead(const double* grains, const PairSlots& slots,
+                                               std::size_t slot) {
   if (slot + kLanes > slots.size()) return;
   const std::uint32_t* const lower = slots.lower_places(slot);
   const std::uint32_t* const higher = slots.higher_places(slot);
