@@ -14,7 +14,7 @@ namespace {
 
 // Steps that the slots should last at the present speed, within these shares of the skin.
 constexpr double kSlotSteps = 24.0;
-constexpr double kLeastGap = 0.04;
+constexpr double kLeastGap = 0.01;
 constexpr double kLargestGap = 0.5;
 
 }  // namespace
