@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdlib>
+#include <optional>
 
 #include "base/atomic_file.hpp"
 #include "base/check.hpp"
@@ -45,8 +46,10 @@ bool owns_fence(const EngineOptions& options) {
   return text && text->substr(0, text->find_last_not_of(" \n\r\t") + 1) == options.token;
 }
 
-Outcome failed(const EngineOptions& options, EngineCode code, const std::string& reason) {
-  Outcome out;
+// @param run what there was of it when it failed
+Outcome failed(const EngineOptions& options, const std::optional<Run>& run, EngineCode code,
+               const std::string& reason) {
+  Outcome out = run ? run->outcome(code) : Outcome{};
   out.token = options.token;
   out.code = code;
   out.reason = reason;
@@ -57,19 +60,20 @@ Outcome failed(const EngineOptions& options, EngineCode code, const std::string&
 // was thrown by every rank alike.
 Outcome run(const Communicator& ranks, const EngineOptions& options,
             Run::Clock::time_point started) {
+  std::optional<Run> run;
   try {
     const Case input = read_frozen_case(ranks, options.run_directory / run_files::kCase);
     bool owns = false;
     on_first_rank(ranks, [&] { owns = owns_fence(options); });
     owns = ranks.from_first(owns ? 1 : 0) != 0;
-    if (!owns) return failed(options, EngineCode::kFenceLost, "another attempt owns the run");
-    return Run(ranks, options, input, started).execute();
+    if (!owns) return failed(options, run, EngineCode::kFenceLost, "another attempt owns the run");
+    return run.emplace(ranks, options, input, started).execute();
   } catch (const ConfigError& error) {
-    return failed(options, EngineCode::kInputRefused, error.what());
+    return failed(options, run, EngineCode::kInputRefused, error.what());
   } catch (const FormatError& error) {
-    return failed(options, EngineCode::kCheckpointRefused, error.what());
+    return failed(options, run, EngineCode::kCheckpointRefused, error.what());
   } catch (const StorageError& error) {
-    return failed(options, EngineCode::kStorageFailed, error.what());
+    return failed(options, run, EngineCode::kStorageFailed, error.what());
   }
 }
 
