@@ -82,6 +82,8 @@ std::string to_json(const Outcome& o) {
               {"end_time", o.end_time},
               {"checkpoint", o.checkpoint},
               {"state_hash", o.state_hash},
+              {"max_overlap", o.max_overlap},
+              {"mean_overlap", o.mean_overlap},
               {"particles", o.particles},
               {"steps_done", o.steps_done},
               {"wall_seconds", o.wall_seconds},
@@ -104,6 +106,8 @@ Outcome outcome_from_json(const std::string& text, const std::string& source) {
     j.at("end_time").get_to(o.end_time);
     j.at("checkpoint").get_to(o.checkpoint);
     j.at("state_hash").get_to(o.state_hash);
+    o.max_overlap = j.value("max_overlap", 0.0);  // younger than the first outcomes
+    o.mean_overlap = j.value("mean_overlap", 0.0);
     j.at("particles").get_to(o.particles);
     j.at("steps_done").get_to(o.steps_done);
     j.at("wall_seconds").get_to(o.wall_seconds);

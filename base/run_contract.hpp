@@ -51,13 +51,15 @@ std::string outcome(const std::string& token);              ///< outcome-<token>
 struct Outcome {
   std::string token;
   EngineCode code = EngineCode::kDefect;
-  std::string reason;      ///< one sentence for people
-  bool by_signal = false;  ///< ended early because the batch system or a person sent a signal
-  std::int64_t step = 0;   ///< last completed step
-  double time = 0.0;       ///< simulated time of that step [s]
-  double end_time = 0.0;   ///< simulated time at which the run is done, if known, else 0 [s]
-  std::string checkpoint;  ///< file name in checkpoints/ of the newest complete one, or ""
-  std::string state_hash;  ///< of that checkpoint's state: same bits, same hash
+  std::string reason;         ///< one sentence for people
+  bool by_signal = false;     ///< ended early because the batch system or a person sent a signal
+  std::int64_t step = 0;      ///< last completed step
+  double time = 0.0;          ///< simulated time of that step [s]
+  double end_time = 0.0;      ///< simulated time at which the run is done, if known, else 0 [s]
+  std::string checkpoint;     ///< file name in checkpoints/ of the newest complete one, or ""
+  std::string state_hash;     ///< of that checkpoint's state: same bits, same hash
+  double max_overlap = 0.0;   ///< largest since the attempt began, over the smaller radius [1]
+  double mean_overlap = 0.0;  ///< of touching grains, at the last look of the attempt [1]
   std::int64_t particles = 0;
   std::int64_t steps_done = 0;   ///< steps computed by this attempt
   double wall_seconds = 0.0;     ///< whole attempt [s]

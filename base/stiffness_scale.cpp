@@ -46,7 +46,8 @@ std::vector<Problem> stiffness_warnings(const YamlNode& node, const Case& input)
                " s, mean overlap about " + rounded(expected.overlap) + " of a radius instead of " +
                rounded(expected_overlap(true_case).overlap) + " under " +
                rounded(1e-3 * expected.pressure) + " kPa",
-           "compare with the max_overlap of series.csv and with a stiffer run"}};
+           "compare with the mean_overlap of the outcome, the max_overlap of series.csv and with a "
+           "stiffer run"}};
 }
 
 }  // namespace grouser

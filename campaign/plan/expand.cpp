@@ -2,6 +2,7 @@
 #include "campaign/plan/expand.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -10,6 +11,7 @@
 #include "base/atomic_file.hpp"
 #include "base/hash.hpp"
 #include "base/list_reach.hpp"
+#include "base/mesh.hpp"
 #include "base/units.hpp"
 
 namespace grouser {
@@ -103,12 +105,22 @@ YamlNode overlaid_case(const CampaignFile& file, const std::vector<std::size_t>&
   return node;
 }
 
-// Hash of a file's content, or what is wrong with the file.
+// Hash of a surface file's content, or what is wrong with it.
 struct SurfaceFile {
   std::string hash;
   std::string problem;
   std::string hint;
+  double rim = 0.0;  // largest distance from the axle, in units of the file
 };
+
+SurfaceFile refused(const ConfigError& error) {
+  const Problem& first = error.problems().front();
+  const std::size_t more = error.problems().size() - 1;
+  return {"",
+          (first.key.empty() ? "" : first.key + " ") + first.problem +
+              (more > 0 ? ", and " + std::to_string(more) + " more" : ""),
+          first.hint};
+}
 
 SurfaceFile read_surface(const std::filesystem::path& file) {
   std::error_code unreadable;
@@ -117,10 +129,24 @@ SurfaceFile read_surface(const std::filesystem::path& file) {
   try {
     const auto text = read_file(file);
     if (!text || text->empty()) return {"", "is empty", "export the surface again"};
-    return {hash_text(*text), "", ""};
+    const Mesh mesh = read_stl(file, 1.0);
+    mesh.check_closed("");
+    SurfaceFile surface{hash_text(*text), "", ""};
+    for (const Vec3& v : mesh.vertices) surface.rim = std::max(surface.rim, std::hypot(v.x, v.z));
+    return surface;
+  } catch (const ConfigError& error) {
+    return refused(error);
   } catch (const StorageError&) {
     return {"", "cannot be read", "check its permissions"};
   }
+}
+
+// What the surface says about the wheel's size must be what the case says: slip and sinkage count
+// from wheel.diameter. Facets may cut a circle's corners a little.
+bool fits(const SurfaceFile& surface, const WheelCase& wheel) {
+  constexpr double kTolerance = 0.01;
+  const double diameter = 2.0 * surface.rim * wheel.stl_scale;
+  return std::abs(diameter - wheel.diameter) <= kTolerance * wheel.diameter;
 }
 
 std::string directory_name(const std::string& label, const std::string& key) {
@@ -186,6 +212,16 @@ class Planner {
     if (!surface.problem.empty()) {
       problems_.add(at, "case.wheel.stl_file", "'" + run.surface.string() + "' " + surface.problem,
                     surface.hint);
+      return false;
+    }
+    const WheelCase& wheel = run.input.wheel;
+    if (wheel.profile == "stl" && !fits(surface, wheel)) {
+      problems_.add(at, "case.wheel.stl_file",
+                    "'" + run.surface.string() + "' is " +
+                        rounded(2.0 * surface.rim * wheel.stl_scale) +
+                        " m across its axle, wheel.diameter is " + rounded(wheel.diameter) + " m",
+                    "look at stl_scale, the length of one unit of the file, and at the diameter; "
+                    "the axle is the file's y axis through the origin");
       return false;
     }
     named = "../../surfaces/" + surface.hash + ".stl";

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdlib>
+#include <optional>
 
 #include "base/atomic_file.hpp"
 #include "base/check.hpp"
@@ -47,8 +48,10 @@ std::string claim_of(const EngineOptions& options) {
   return text->substr(0, text->find_last_not_of(" \n\r\t") + 1);
 }
 
-Outcome failed(const EngineOptions& options, EngineCode code, const std::string& reason) {
-  Outcome out;
+// @param run what there was of it when it failed
+Outcome failed(const EngineOptions& options, const std::optional<Run>& run, EngineCode code,
+               const std::string& reason) {
+  Outcome out = run ? run->outcome(code) : Outcome{};
   out.token = options.token;
   out.code = code;
   out.reason = reason;
@@ -58,19 +61,20 @@ Outcome failed(const EngineOptions& options, EngineCode code, const std::string&
 // One of the two places that catch (the other is the campaign manager's main). What is caught here
 // was thrown by every rank alike.
 Outcome run(const Communicator& ranks, EngineOptions options, Run::Clock::time_point started) {
+  std::optional<Run> run;
   try {
     const Case input = read_frozen_case(ranks, options.run_directory / run_files::kCase);
     on_first_rank(ranks, [&] { options.claim = claim_of(options); });
     options.claim = ranks.from_first(options.claim);
     if (options.claim.empty())
-      return failed(options, EngineCode::kFenceLost, "another attempt owns the run");
-    return Run(ranks, options, input, started).execute();
+      return failed(options, run, EngineCode::kFenceLost, "another attempt owns the run");
+    return run.emplace(ranks, options, input, started).execute();
   } catch (const ConfigError& error) {
-    return failed(options, EngineCode::kInputRefused, error.what());
+    return failed(options, run, EngineCode::kInputRefused, error.what());
   } catch (const FormatError& error) {
-    return failed(options, EngineCode::kCheckpointRefused, error.what());
+    return failed(options, run, EngineCode::kCheckpointRefused, error.what());
   } catch (const StorageError& error) {
-    return failed(options, EngineCode::kStorageFailed, error.what());
+    return failed(options, run, EngineCode::kStorageFailed, error.what());
   }
 }
 

@@ -12,6 +12,8 @@
 
 #include "base/atomic_file.hpp"
 #include "base/errors.hpp"
+#include "base/units.hpp"
+#include "engine/app/breakdown.hpp"
 #include "engine/app/setup.hpp"
 #include "engine/app/slice.hpp"
 #include "engine/app/snapshot.hpp"
@@ -68,6 +70,7 @@ Run::Run(const Communicator& ranks, const EngineOptions& options, const Case& in
       key_(content_key(input.has_wheel ? input : bed_case(input))),
       started_(started),
       world_(make_world(ranks, input)),
+      ledger_(ranks),
       checkpoints_(ranks, options.run_directory / run_files::kCheckpoints,
                    frozen_case(ranks, options.run_directory)) {
   const double dt = world_.settings().time_step;
@@ -159,7 +162,7 @@ void Run::resume(const CheckpointManifest& manifest) {
 }
 
 std::vector<Stateful*> Run::modules() {
-  std::vector<Stateful*> all{&world_};
+  std::vector<Stateful*> all{&world_, &ledger_};
   if (outer_) all.push_back(outer_.get());
   if (wheel_) all.push_back(wheel_.get());
   return all;
@@ -223,8 +226,10 @@ Outcome Run::execute() {
     double wanted = request();
     if (!report_progress(false)) wanted = kStorage;
     const World::StepResult result = one_step(wanted);
+    ledger_.add_work(world_);
     if (wheel_) wheel_->advance(time(), result.max_overlap);
     max_overlap_ = std::max(max_overlap_, result.max_overlap);
+    largest_overlap_ = std::max(largest_overlap_, result.max_overlap);
     if (const auto code = after_step(result)) {
       // A run that another attempt owns is left as it is.
       if (*code != EngineCode::kFenceLost) {
@@ -251,19 +256,8 @@ void Run::add_track_row(std::int64_t step) {
 }
 
 std::optional<EngineCode> Run::after_step(const World::StepResult& result) {
-  if (result.fault == Fault::kNotANumber || result.fault == Fault::kLostParticle ||
-      result.max_overlap > input_.numerics.max_overlap) {
-    reason_ = result.fault == Fault::kNotANumber ? "a force or velocity is not a number"
-              : result.fault == Fault::kLostParticle
-                  ? "a grain has left the box"
-                  : "overlap " + std::to_string(result.max_overlap) + " of a radius is over " +
-                        std::to_string(input_.numerics.max_overlap) +
-                        "; use stiffer grains or a smaller time step";
-    reason_ += " at step " + std::to_string(step_);
-    return EngineCode::kBrokeDown;
-  }
-  if (wheel_ && !wheel_->fault().empty()) {
-    reason_ = wheel_->fault() + " at step " + std::to_string(step_);
+  if (const auto what = breakdown(result)) {
+    reason_ = "at step " + std::to_string(step_) + ", " + rounded(time()) + " s, " + *what;
     return EngineCode::kBrokeDown;
   }
   if (step_ % series_steps_ == 0) add_series_row();
@@ -282,6 +276,17 @@ std::optional<EngineCode> Run::after_step(const World::StepResult& result) {
       options_.checkpoint_seconds ? result.request == kCheckpoint : step_ % checkpoint_steps_ == 0;
   if (is_due && !write_checkpoint(false)) return EngineCode::kFenceLost;
   return std::nullopt;
+}
+
+std::optional<std::string> Run::breakdown(const World::StepResult& result) {
+  if (auto what = breakdown_of(world_, result, input_)) return what;
+  if (wheel_ && !wheel_->fault().empty()) return wheel_->fault();
+  if (step_ % EnergyLedger::kInterval != 0) return std::nullopt;
+  const World::Survey survey = world_.survey();
+  mean_overlap_ = survey.mean_overlap;
+  // What outer forces do to the grains is not in the ledger.
+  if (outer_ || !ledger_.rises(survey)) return std::nullopt;
+  return heating_text(ledger_, survey, input_);
 }
 
 std::optional<EngineCode> Run::check_settling() {
@@ -318,6 +323,7 @@ State Run::state(const StatePiece& piece) const {
   world_.save_state(state, piece);
   if (outer_) outer_->save_state(state, piece);
   if (wheel_) wheel_->save_state(state, piece);
+  ledger_.save_state(state, piece);
   StateTable own;
   own.name = kOwnTable;
   own.key_count = own.all_rows = 1;
@@ -469,6 +475,8 @@ Outcome Run::outcome(EngineCode code) const {
   out.end_time = static_cast<double>(end_step_) * world_.settings().time_step;
   out.checkpoint = newest_.file;
   out.state_hash = newest_.state_hash;
+  out.max_overlap = largest_overlap_;
+  out.mean_overlap = mean_overlap_;
   out.particles = particles_;
   out.steps_done = step_ - first_step_;
   out.wall_seconds = elapsed();

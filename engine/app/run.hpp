@@ -9,6 +9,7 @@
 
 #include "base/case.hpp"
 #include "base/run_contract.hpp"
+#include "engine/app/energy_ledger.hpp"
 #include "engine/coupling/outer_forces.hpp"
 #include "engine/dem/world.hpp"
 #include "engine/io/checkpoint.hpp"
@@ -47,6 +48,9 @@ class Run {
   /// Steps until something ends the attempt. Collective.
   Outcome execute();
 
+  /// Where the run stands, as the last word of an attempt that ends so. Local.
+  Outcome outcome(EngineCode code) const;
+
  private:
   void begin();
   void begin_from_bed();
@@ -58,6 +62,7 @@ class Run {
 
   bool is_done() const;
   std::optional<EngineCode> after_step(const World::StepResult& result);
+  std::optional<std::string> breakdown(const World::StepResult& result);
   std::optional<EngineCode> check_settling();
   double request() const;
   EngineCode end_by_request(double request);
@@ -69,7 +74,6 @@ class Run {
   bool report_progress(bool now);  // whether it could be written
   void write_slice();
   void event(const std::string& kind, const CheckpointManifest& manifest);
-  Outcome outcome(EngineCode code) const;
 
   double time() const { return static_cast<double>(step_) * world_.settings().time_step; }
   double elapsed() const;
@@ -81,6 +85,7 @@ class Run {
   std::string key_;
   Clock::time_point started_;
   World world_;
+  EnergyLedger ledger_;
   std::unique_ptr<OuterForces> outer_;
   std::unique_ptr<Wheel> wheel_;
   CheckpointStore checkpoints_;
@@ -107,7 +112,9 @@ class Run {
   double reported_at_ = 0.0;
   std::int64_t reported_step_ = 0;
   double speed_ = 0.0;
-  double max_overlap_ = 0.0;
+  double max_overlap_ = 0.0;      // since the last row of the series
+  double largest_overlap_ = 0.0;  // since the attempt began
+  double mean_overlap_ = 0.0;     // when last looked at
 };
 
 }  // namespace grouser

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "engine/core/vec3.hpp"
+#include "base/vec3.hpp"
 
 namespace grouser {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "engine/core/vec3.hpp"
+#include "base/vec3.hpp"
 
 namespace grouser {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "engine/core/vec3.hpp"
+#include "base/vec3.hpp"
 
 #ifdef __AVX__
 #include <immintrin.h>

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "engine/core/vec3.hpp"
+#include "base/vec3.hpp"
 
 namespace grouser {
 
@@ -23,6 +23,14 @@ static_assert(sizeof(Particle) == 96);
 inline bool is_within(const Particle& a, const Particle& b, double gap) {
   const double reach = a.radius + b.radius + gap;
   return norm2(a.position - b.position) < reach * reach;
+}
+
+/// Moment of inertia of a homogeneous sphere over m r^2.
+inline constexpr double kSphereInertia = 0.4;
+
+/// Translational and rotational kinetic energy [J]. Local.
+inline double kinetic_energy_of(const Particle& p) {
+  return 0.5 * p.mass * (norm2(p.velocity) + kSphereInertia * p.radius * p.radius * norm2(p.spin));
 }
 
 }  // namespace grouser

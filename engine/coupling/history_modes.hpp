@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "engine/core/vec3.hpp"
+#include "base/vec3.hpp"
 
 namespace grouser {
 

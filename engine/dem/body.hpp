@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "engine/core/vec3.hpp"
+#include "base/vec3.hpp"
 #include "engine/dem/laws/hertz_mindlin.hpp"
 #include "engine/dem/mesh.hpp"
 

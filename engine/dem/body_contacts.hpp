@@ -10,6 +10,7 @@
 #include "engine/core/state_io.hpp"
 #include "engine/core/threads.hpp"
 #include "engine/dem/body.hpp"
+#include "engine/dem/history_view.hpp"
 #include "engine/dem/laws/table.hpp"
 
 namespace grouser {
@@ -95,6 +96,14 @@ class BodyContacts {
     };
     each_of(kept_);
     for (const Part& part : parts_) each_of(part.touches);
+  }
+
+  /// Calls visit(grain, store) for what each touch holds. After a sweep only.
+  template <class Visit>
+  void each_store(const std::vector<Particle>& particles, const Visit& visit) const {
+    each_touch(0, particles.size(), [&](std::uint32_t grain, int, const double* history) {
+      visit(grain, store_of(law_, rolling_, history, particles[grain].radius));
+    });
   }
 
  private:

@@ -21,8 +21,6 @@ struct GrainGain {
   Vec3 spin;      ///< [rad s-1]
 };
 
-inline constexpr double kSphereInertia = 0.4;  ///< of a homogeneous sphere, over m r^2 [1]
-
 /// The gain of a grain under its contacts and gravity alone, along -z. Local.
 inline GrainGain plain_gain(const Particle& p, const GrainLoad& load, double time_step,
                             double gravity) {

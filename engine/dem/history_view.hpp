@@ -83,6 +83,23 @@ struct HistoryView {
   }
 };
 
+/// What a contact with this history, as laid out in an array, holds, rolling included.
+/// @param radius effective radius [m]. Local.
+inline ContactStore store_of(const ContactLaw& law, const RollingLaw& rolling, const double* values,
+                             double radius) {
+  return std::visit(
+      [&](const auto& contact, const auto& turning) {
+        using View = HistoryView<std::decay_t<decltype(contact)>, std::decay_t<decltype(turning)>>;
+        typename View::LawHistory contact_history;
+        typename View::RollingHistory rolling_history;
+        View::load(values, contact_history, rolling_history);
+        ContactStore store = contact.store_of(contact_history, radius);
+        store.energy += turning.energy_of(rolling_history, store, radius);
+        return store;
+      },
+      law, rolling);
+}
+
 /// Numbers per contact for these laws.
 inline std::size_t history_width(const ContactLaw& law, const RollingLaw& rolling) {
   return std::visit(

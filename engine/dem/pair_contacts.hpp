@@ -10,6 +10,7 @@
 #include "engine/core/particle.hpp"
 #include "engine/core/state_io.hpp"
 #include "engine/core/threads.hpp"
+#include "engine/dem/history_view.hpp"
 #include "engine/dem/laws/table.hpp"
 #include "engine/dem/pair_histories.hpp"
 #include "engine/dem/pair_slots.hpp"
@@ -93,6 +94,11 @@ class PairContacts {
   /// are not is_fast, and the mean over all grains of |vx| + |vy| + |vz|.
   void note_speeds(double slow, double mean, double time_step);
 
+  /// Calls visit(lower, higher, store) for each contact that touched in the last sweep and whose
+  /// lower id is owned; both are numbers of grains. After a sweep only.
+  template <class Visit>
+  void each_store(const std::vector<Particle>& particles, const Visit& visit) const;
+
   /// Calls visit(grain, partner id, values) for each touching contact whose lower id is owned.
   template <class Visit>
   void each_history(const std::vector<Particle>& particles, const Visit& visit) const;
@@ -170,6 +176,21 @@ class PairContacts {
   double time_step_ = 0.0;
   LineVector<double> results_;  // what each slot does in this step, where the plan says
 };
+
+template <class Visit>
+void PairContacts::each_store(const std::vector<Particle>& particles, const Visit& visit) const {
+  std::vector<double> values(history_width());
+  for (const Block& block : blocks_)
+    for (std::size_t slot = 0; slot < block.slots.size(); ++slot) {
+      const std::uint32_t lower = block.slots.lower(slot);
+      const std::uint32_t higher = block.slots.higher(slot);
+      if (!block.slots.is_touching(slot) || lower >= owned_) continue;
+      block.slots.history_of(slot, values.data());
+      const double a = particles[lower].radius;
+      const double b = particles[higher].radius;
+      visit(lower, higher, store_of(law_, rolling_, values.data(), a * b / (a + b)));
+    }
+}
 
 template <class Visit>
 void PairContacts::each_history(const std::vector<Particle>& particles, const Visit& visit) const {

@@ -145,6 +145,7 @@ World::StepResult World::step(double request) {
   StepResult result;
   result.max_overlap = totals.maxima[2];
   result.request = totals.maxima[4];
+  result.fastest = totals.maxima[0];
   if (totals.maxima[3] > 0.0) result.fault = Fault::kLostParticle;
   if (!std::isfinite(totals.maxima[0])) {
     result.fault = Fault::kNotANumber;
@@ -206,18 +207,6 @@ double World::displacement() const {
   for (std::size_t i = 0; i < owned_; ++i)
     largest2 = std::max(largest2, norm2(particles_[i].position - built_at_[i].position()));
   return std::sqrt(largest2) + rounding_;
-}
-
-double World::kinetic_energy() const {
-  Communicator::StepTotals totals;
-  totals.sums.resize(1);
-  for (std::size_t i = 0; i < owned_; ++i) {
-    const Particle& p = particles_[i];
-    totals.sums[0].add(0.5 * p.mass *
-                       (norm2(p.velocity) + kSphereInertia * p.radius * p.radius * norm2(p.spin)));
-  }
-  ranks_.combine(totals);
-  return totals.sums[0].value();
 }
 
 std::int64_t World::contacts() const {

@@ -78,6 +78,7 @@ class World : public Stateful {
     Fault fault = Fault::kNone;
     double max_overlap = 0.0;  ///< over the (smaller) radius [1]
     double request = 0.0;      ///< largest of the ranks' requests
+    double fastest = 0.0;      ///< speed of a grain [m s-1]
   };
   /// Forces at the present positions, then grains move on by one time step; bodies stay for the
   /// caller to move. `request` lets ranks agree on something in the same message. Collective.
@@ -92,6 +93,38 @@ class World : public Stateful {
 
   /// Force and moment of all grains on a body in the last step. Local.
   const BodyLoad& load(std::size_t body) const { return loads_[body]; }
+
+  /// What all grains and contacts hold after a step. The elastic part is that of the forces of the
+  /// step, the height is taken half a step back where the velocities are.
+  struct Survey {
+    double kinetic = 0.0;       ///< [J]
+    double potential = 0.0;     ///< in gravity, above z = 0 [J]
+    double elastic = 0.0;       ///< of pairs and body contacts, rolling included [J]
+    double mean_overlap = 0.0;  ///< of touching pairs, over the smaller radius [1]
+    double total() const { return kinetic + potential + elastic; }
+  };
+  /// Collective.
+  Survey survey() const;
+
+  /// The grain that a fault is about.
+  struct Culprit {
+    std::int64_t id = -1;  ///< lowest of those it is true of; -1 = none
+    Vec3 position;         ///< [m]
+    Vec3 velocity;         ///< [m s-1]
+    Vec3 origin;           ///< position at the start of the run [m]
+  };
+  /// Collective.
+  Culprit culprit(Fault fault) const;
+
+  /// The deepest contact of the last step.
+  struct Deepest {
+    double overlap = 0.0;      ///< over the smaller radius [1]
+    std::int64_t first = -1;   ///< lower id, or the grain on a body
+    std::int64_t second = -1;  ///< higher id, or -1 - number of the body
+    Vec3 position;             ///< of the first [m]
+  };
+  /// Collective.
+  Deepest deepest() const;
 
   /// Sum of translational and rotational kinetic energy of all grains [J]. Collective.
   double kinetic_energy() const;

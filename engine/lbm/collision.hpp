@@ -6,7 +6,7 @@
 #include <string>
 #include <variant>
 
-#include "engine/core/vec3.hpp"
+#include "base/vec3.hpp"
 #include "engine/lbm/lattice.hpp"
 #include "engine/lbm/wide.hpp"
 

@@ -213,7 +213,8 @@ TEST(StiffnessScale, BelowOneIsWarnedOfWithStepAndOverlap) {
   EXPECT_EQ(warnings_of(input),
             "contact.stiffness_scale: makes every contact 0.01 as stiff as its solids: time step "
             "0.000381 s instead of 3.94e-05 s, mean overlap about 0.268 of a radius instead of "
-            "0.0124 under 10 kPa; compare with the max_overlap of series.csv and with a stiffer "
+            "0.0124 under 10 kPa; compare with the mean_overlap of the outcome, the max_overlap of "
+            "series.csv and with a stiffer "
             "run\n");
 }
 

@@ -226,20 +226,20 @@ TEST_F(Changing, ASurfaceFileIsCopiedAndKnownByItsContent) {
             file + "}}\n",
         kHead);
   };
-  const auto copy = root_ / "surfaces" / (hash_text("solid one") + ".stl");
-  write_atomic(directory_.path() / "w.stl", "solid one");
-  write_atomic(directory_.path() / "same.stl", "solid one");
+  const auto copy = root_ / "surfaces" / (hash_text(small_surface("one")) + ".stl");
+  write_atomic(directory_.path() / "w.stl", small_surface("one"));
+  write_atomic(directory_.path() / "same.stl", small_surface("one"));
   launch(stl("w.stl"));
-  EXPECT_EQ(read_file(copy), "solid one");
+  EXPECT_EQ(read_file(copy), small_surface("one"));
   EXPECT_EQ(read_file((root_ / run_of("a", true).directory / "../../surfaces" / copy.filename())
                           .lexically_normal()),
-            "solid one");
+            small_surface("one"));
   std::filesystem::remove(copy);
   const auto moved = compare(stl("same.stl"));
   EXPECT_TRUE(moved.added.empty() && moved.gone.empty());
   launch_again(*store_);
-  EXPECT_EQ(read_file(copy), "solid one") << "made again";
-  write_atomic(directory_.path() / "same.stl", "solid two");
+  EXPECT_EQ(read_file(copy), small_surface("one")) << "made again";
+  write_atomic(directory_.path() / "same.stl", small_surface("two"));
   EXPECT_EQ(compare(stl("same.stl")).added, std::vector<std::string>{"a"});
 }
 

@@ -227,6 +227,44 @@ TEST(CampaignErrors, ASurfaceFileMustHoldASurface) {
   expect_parts(empty, {"c.yaml:25:62: case.wheel.stl_file: '", "empty.stl' is empty"});
   EXPECT_EQ(count_lines(empty), 1u) << empty;
   expect_parts(with(elsewhere.path()), {"' is not a file"});
+  const auto of_text = [&](const std::string& text) {
+    write_atomic(elsewhere.path() / "w.stl", text);
+    return with(elsewhere.path() / "w.stl");
+  };
+  const std::string good = small_surface("good");
+  EXPECT_EQ(of_text(good), "");
+  const auto replaced = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    return text.replace(text.rfind(from), from.size(), to);
+  };
+  const std::string place = "c.yaml:25:62: case.wheel.stl_file: '";
+  // The last facet is flat; it is gone; its corner is no number; no surface at all; cut off.
+  expect_parts(of_text(replaced("vertex -0.0625 -0.03 0", "vertex 0 0.03 0.01")),
+               {place, "w.stl' facet 3 has no area; remove or mend it"});
+  expect_parts(of_text(good.substr(0, good.rfind("facet normal"))),
+               {place, "is not closed at 3 edges, the first from"});
+  expect_parts(of_text(replaced("-0.0625", "nan")),
+               {place, "has a facet whose three vertices cannot be read"});
+  expect_parts(of_text("notes of the meeting"), {place, "has no facets; give a surface"});
+  expect_parts(
+      of_text(std::string(80, ' ') + std::string("\7\0\0\0", 4)),
+      {place, "is cut off or damaged: it has 84 bytes instead of the 434 of the 7 facets"});
+}
+
+TEST(CampaignErrors, ASurfaceMustBeAsLargeAsTheWheel) {
+  TemporaryDirectory elsewhere;
+  write_atomic(elsewhere.path() / "w.stl", small_surface("metres"));
+  const auto with = [&](const std::string& scale) {
+    return problems_of(small_campaign(
+        "sweep:\n  - axis: w\n    points:\n      - {label: a, set: {wheel.profile: stl, "
+        "wheel.stl_scale: " +
+        scale + ", wheel.stl_file: " + (elsewhere.path() / "w.stl").string() + "}}\n"));
+  };
+  EXPECT_EQ(with("1 m"), "");
+  EXPECT_EQ(with("0.995 m"), "");
+  expect_parts(with("1 mm"), {"c.yaml:25:85: case.wheel.stl_file: '",
+                              "w.stl' is 0.000125 m across its axle, wheel.diameter is 0.125 m; "
+                              "look at stl_scale"});
 }
 
 TEST(CampaignErrors, AReportThatIsNoMapIsRefused) {

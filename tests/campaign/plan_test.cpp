@@ -103,14 +103,15 @@ TEST_F(Planning, SurfaceFilesCountFromTheYamlAndAreNamedByTheirContent) {
                        "      - {label: a, set: {wheel.profile: stl, wheel.stl_file: " +
                        file + "}}\n"));
   };
-  write_atomic(directory_.path() / "w.stl", "solid");
-  write_atomic(directory_.path() / "copy.stl", "solid");
+  write_atomic(directory_.path() / "w.stl", small_surface("one"));
+  write_atomic(directory_.path() / "copy.stl", small_surface("one"));
   const Plan made = plan_with("w.stl");
   EXPECT_EQ(made.runs[1].surface, directory_.path() / "w.stl");
-  EXPECT_EQ(made.runs[1].input.wheel.stl_file, "../../surfaces/" + hash_text("solid") + ".stl");
+  EXPECT_EQ(made.runs[1].input.wheel.stl_file,
+            "../../surfaces/" + hash_text(small_surface("one")) + ".stl");
   EXPECT_EQ(made.runs[0].surface, "");
   EXPECT_EQ(plan_with("copy.stl").runs[1].key, made.runs[1].key);
-  write_atomic(directory_.path() / "w.stl", "solid, mended");
+  write_atomic(directory_.path() / "w.stl", small_surface("mended"));
   EXPECT_NE(plan_with("w.stl").runs[1].key, made.runs[1].key);
 }
 

@@ -27,6 +27,21 @@ inline constexpr const char* kSmallCase = R"(
   output: {checkpoint_interval: 20 ms}
 )";
 
+/// A closed surface as STL text that goes with the small case's wheel: four facets, the farthest
+/// corners a diameter of 12.5 cm apart. `name` makes files of other content.
+inline std::string small_surface(const std::string& name) {
+  const char* const corners[4] = {"0.0625 -0.03 0", "-0.0625 -0.03 0", "0 0.03 0.05",
+                                  "0 0.03 -0.05"};
+  const int facets[4][3] = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
+  std::string text = "solid " + name + "\n";
+  for (const auto& facet : facets) {
+    text += "facet normal 0 0 0\nouter loop\n";
+    for (const int corner : facet) text += std::string("vertex ") + corners[corner] + "\n";
+    text += "endloop\nendfacet\n";
+  }
+  return text + "endsolid\n";
+}
+
 /// Head, case and whatever `rest` adds.
 inline std::string small_campaign(const std::string& rest,
                                   const std::string& head = "campaign: small\n") {

@@ -241,6 +241,10 @@ full_disk() {
       fail "the outcome does not tell of the full disk: $(cat "$outcome")"
     [ "$(sed -n 's/.*"reason": "checkpoint at step \([0-9]*\) .*/\1/p' "$outcome")" -gt "$at" ] ||
       fail "the disk was full before the attempt's first step"
+    grep -q "\"step\": $(sed -n 's/.*"reason": "checkpoint at step \([0-9]*\) .*/\1/p' "$outcome")," \
+      "$outcome" || fail "the outcome does not tell where the run stood: $(cat "$outcome")"
+    grep -q "\"checkpoint\": \"step_0*$at" "$outcome" ||
+      fail "the outcome does not name the checkpoint that stands: $(cat "$outcome")"
     [ "$(ls "$dir/checkpoints")" = "$before" ] || fail "the full disk changed the checkpoints"
     fill_disk 0
     launch "$ranks" "$dir" --bed bed
@@ -254,8 +258,7 @@ full_disk() {
   done
 }
 
-# Lost grains are looked for when lists are made anew, which a restart does: the step may differ.
-verdict() { grep -E '"(reason|state_hash|checkpoint)"' "$outcome" | sed 's/ at step [0-9]*//'; }
+verdict() { grep -E '"(reason|state_hash|checkpoint|step)"' "$outcome"; }
 
 # A wheel that stands well and breaks the run once it drives. The last checkpoint before stays and
 # leads to the same breakdown; so do two ranks.
@@ -269,7 +272,8 @@ expect_breakdown() {  # NAME REASON WHEEL
       "ramp_time: 5 ms, start: 0.5, travel: 1 cm, average_travel: 1 cm, $3}" >>"$dir/case.yaml"
     launch "$ranks" "$dir" --bed bed
     [ "$code" = 30 ] || fail "$1 on $ranks ranks ended with $code instead of 30"
-    grep -q "\"reason\": \"$2" "$outcome" || fail "$1: the outcome tells of something else"
+    grep -qE "\"reason\": \"at step [0-9]+, [0-9.e-]+ s, $2" "$outcome" ||
+      fail "$1: the outcome tells of something else: $(cat "$outcome")"
     kept=$(ls "$dir/checkpoints")
     [ "$(newest_step "$dir")" -gt 0 ] || fail "$1 has no checkpoint from before its breakdown"
     [ "$(verdict)" = "${last:=$(verdict)}" ] || fail "$1 broke in another way on $ranks ranks"
@@ -291,17 +295,18 @@ broken() {
   sed -i 's/max_overlap: 30 %/max_overlap: 0.01 %/' soft/case.yaml
   launch 1 soft --bed bed
   [ "$code" = 30 ] || fail "an over-large overlap ended with $code instead of 30"
-  grep -q 'overlap' "$outcome" || fail "the outcome does not say why"
+  grep -q 'overlap .* is over numerics.max_overlap 0.0001: grain [0-9]* at (.*) m and ' "$outcome" ||
+    fail "the outcome does not say why: $(cat "$outcome")"
   [ "$(ls soft/checkpoints)" = "$kept" ] || fail "the broken run changed the checkpoints"
   sed -i 's/max_overlap: 0.01 %/max_overlap: 30 %/' soft/case.yaml
   launch 1 soft --bed bed
   expect_same soft "after a breakdown"
   # The square of the speed that this torque makes is not a number any more; a speed that is given
   # would be refused.
-  expect_breakdown nan 'a force or velocity is not a number' \
+  expect_breakdown nan 'a force or velocity is not a number: grain [0-9]+' \
     'forward_speed: 0.1 m/s, drive: torque, torque: 1e200 N m'
   # Grains fly over walls and headroom.
-  expect_breakdown lost 'a grain has left the box' \
+  expect_breakdown lost 'a grain has left the box: grain [0-9]+ is at ' \
     'forward_speed: 0.03 m/s, drive: rim_speed, rim_speed: 25 m/s'
 }
 

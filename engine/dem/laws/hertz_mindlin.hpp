@@ -47,6 +47,13 @@ struct ContactForceT {
 };
 using ContactForce = ContactForceT<double>;
 
+/// What a contact holds, told by its history alone.
+struct ContactStore {
+  double overlap = 0.0;    ///< [m]
+  double energy = 0.0;     ///< elastic, normal and tangential [J]
+  double stiffness = 0.0;  ///< tangential [N m-1]
+};
+
 /// Hertz normal force, Mindlin tangential spring with Coulomb limit, viscous damping in both.
 ///
 /// Normal: F = 4/3 E* sqrt(R) d^(3/2) - 2 sqrt(5/6) beta sqrt(Sn m) v, Sn = 2 E* sqrt(R d)
@@ -83,6 +90,19 @@ class HertzMindlin {
   template <class Real>
   ContactForceT<Real> evaluate(const ContactPointT<Real>& at, HistoryT<Real>& history,
                                double time_step) const;
+
+  /// What a contact of effective radius `radius` [m] with this history holds. The energy is
+  /// 8/15 E* sqrt(R) d^(5/2) + Fe^2/(2 St). Local.
+  ContactStore store_of(const History& history, double radius) const {
+    const double patch2 = history.patch * history.patch;
+    ContactStore out;
+    out.overlap = patch2 / radius;
+    out.stiffness = 8.0 * shear_ * history.patch;
+    if (history.patch > 0.0)
+      out.energy = 8.0 / 15.0 * young_ * patch2 * patch2 * history.patch / (radius * radius) +
+                   0.5 * norm2(history.spring) / out.stiffness;
+    return out;
+  }
 
   /// Damping ratio beta for which the cut law returns `restitution` (0.01 to 1). Integrates the
   /// collision of two bodies in scaled form; relative error of the restitution below 1e-4. Local.

@@ -20,6 +20,7 @@ struct NoRolling {
                        double) const {
     return {};
   }
+  double energy_of(const History&, const ContactStore&, double) const { return 0.0; }
 };
 
 /// Elastic-plastic rolling resistance: a moment grows with the rolling angle at stiffness
@@ -58,6 +59,12 @@ class ElasticPlasticRolling {
     moment *= select(length2 > limit * limit, limit / sqrt(length2), Real(1.0));
     history.moment = moment;
     return moment;
+  }
+
+  /// Elastic energy of a contact of effective radius `radius` [m] with this history [J]. Local.
+  double energy_of(const History& history, const ContactStore& store, double radius) const {
+    const double stiffness = store.stiffness * radius * radius;
+    return stiffness > 0.0 ? 0.5 * norm2(history.moment) / stiffness : 0.0;
   }
 
  private:

@@ -6,7 +6,7 @@
 
 #include "base/atomic_file.hpp"
 #include "base/errors.hpp"
-#include "engine/dem/mesh.hpp"
+#include "base/mesh.hpp"
 
 namespace grouser {
 namespace {
@@ -96,6 +96,11 @@ Mesh read_stl(const std::filesystem::path& file, double scale) {
   Welder welder(scale);
   if (is_binary(*text)) {
     read_binary(*text, welder);
+  } else if (text->find('\0') != std::string::npos) {
+    refuse(file, "is cut off or damaged: it has " + std::to_string(text->size()) +
+                     " bytes instead of the " +
+                     std::to_string(kHeader + 4 + kRecord * std::size_t{binary_count(*text)}) +
+                     " of the " + std::to_string(binary_count(*text)) + " facets it announces");
   } else {
     read_text(file, *text, welder);
   }
