@@ -16,10 +16,10 @@ namespace grouser {
 namespace {
 
 // In the order of the help text: from making a campaign to reading its results.
-constexpr std::array kVerbs{add_init,   add_validate, add_expand, add_plan,
-                            add_submit, add_tick,     add_status, add_show,
-                            add_query,  add_logs,     add_stop,   add_cancel,
-                            add_resume, add_report,   add_schema, add_recording};
+constexpr std::array kVerbs{add_init,      add_validate, add_expand, add_plan,   add_submit,
+                            add_tick,      add_status,   add_show,   add_query,  add_logs,
+                            add_stop,      add_cancel,   add_resume, add_report, add_schema,
+                            add_recording, add_diagnose};
 
 int parse(CLI::App& app, int argc, char** argv, int& code) {
   try {
