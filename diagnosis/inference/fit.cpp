@@ -141,7 +141,10 @@ double log_likelihood(const Eigen::VectorXd& residual) { return -0.5 * residual.
 
 Fit fit(const Study& study, const Coordinates& coordinates, const Eigen::VectorXd& start,
         int most_steps) {
-  return Fitter(study, coordinates).run(start, most_steps);
+  study.set_calm(true);
+  const Fit coarse = Fitter(study, coordinates).run(start, most_steps);
+  study.set_calm(false);
+  return Fitter(study, coordinates).run(coarse.p, most_steps);
 }
 
 }  // namespace grouser::diagnosis

@@ -27,6 +27,7 @@ struct Fit {
 /// Most probable parameters by Gauss-Newton with Levenberg-Marquardt damping from `start`, and the
 /// evidence by Laplace's method: priors are standard normal in p, so
 ///   ln Z = ln L - p.p/2 - ln det(J'J + 1)/2 + n ln 2   (n coordinates that are half a normal).
+/// The samples near impacts are left out at first, until the impact falls in its place.
 /// The likelihood is normal with the noise as estimated: a heavier tail would let a fit give up a
 /// whole channel, which is what a misfit must not do. Local.
 Fit fit(const Study& study, const Coordinates& coordinates, const Eigen::VectorXd& start,

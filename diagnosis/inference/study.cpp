@@ -48,6 +48,19 @@ std::vector<double> weights_of(const std::vector<double>& values, double noise_s
   return weights;
 }
 
+/// From the weights of all channels of a condition.
+std::vector<double> calm_of(const std::vector<std::vector<double>>& weights) {
+  constexpr std::size_t kReach = 24;
+  const std::size_t n = weights[0].size();
+  std::vector<double> calm(n, 1.0);
+  for (std::size_t i = 0; i < n; ++i)
+    for (const std::vector<double>& of_channel : weights)
+      if (of_channel[i] < 0.05)
+        for (std::size_t k = i - std::min(i, kReach); k < std::min(n, i + kReach); ++k)
+          calm[k] = 0.01;
+  return calm;
+}
+
 double range_of(const std::vector<double>& values) {
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   return *high - *low;
@@ -108,6 +121,7 @@ Study::Study(const SeriesRecording& recording, const Terms& terms, bool held_out
       o.noise.push_back(noise);
       o.weights.push_back(weights_of(o.samples[c], rough));
     }
+    o.calm = calm_of(o.weights);
     observed_.push_back(std::move(o));
   }
   add_baseline(recording, taken);
@@ -281,7 +295,8 @@ void Study::whiten(std::size_t condition, double* values) const {
   const Observed& o = observed_[condition];
   const std::size_t n = o.times.size();
   for (std::size_t c = 0; c < channels_.size(); ++c) {
-    for (std::size_t i = 0; i < n; ++i) values[c * n + i] *= o.weights[c][i];
+    for (std::size_t i = 0; i < n; ++i)
+      values[c * n + i] *= o.weights[c][i] * (is_calm_ ? o.calm[i] : 1.0);
     diagnosis::whiten(o.noise[c], values + c * n, n);
   }
 }

@@ -42,6 +42,7 @@ struct Observed {
   /// a sensor shows depends on when within its interval it looked. From the data alone, so that all
   /// causes are measured alike.
   std::vector<std::vector<double>> weights;
+  std::vector<double> calm;  ///< 1 far from every jump, 1/100 near one: for the first part of a fit
   std::vector<double> stated;  ///< noise per channel as the recording says, or 0
   double release = 0.0;        ///< expected time of release
   std::size_t first = 0;       ///< row of its first sample in stacked vectors
@@ -78,6 +79,9 @@ class Study {
                 Eigen::VectorXd& out) const;
   /// Whitens values that are stacked as predicted samples, in place.
   void whiten(std::size_t condition, double* values) const;
+  /// Whether samples near impacts hardly count: a fit that starts with the impact at the wrong
+  /// time would be caught by it.
+  void set_calm(bool is_calm) const { is_calm_ = is_calm; }
 
   double scale_of(Scale scale, int channel) const;
   double duration_of(std::size_t condition) const;
@@ -92,6 +96,7 @@ class Study {
   Terms terms_;
   std::size_t rows_ = 0;
   mutable long runs_ = 0;
+  mutable bool is_calm_ = false;
 };
 
 }  // namespace grouser::diagnosis
