@@ -19,7 +19,10 @@ std::vector<double> periodogram(const std::vector<double>& values) {
   const std::size_t n = values.size();
   const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(n);
   std::vector<double> in(n);
-  std::transform(values.begin(), values.end(), in.begin(), [&](double v) { return v - mean; });
+  // A Hann taper keeps slow misfits from leaking upward; it is scaled to keep noise's power.
+  for (std::size_t i = 0; i < n; ++i)
+    in[i] = (values[i] - mean) * std::sqrt(2.0 / 3.0) *
+            (1.0 - std::cos(2.0 * std::numbers::pi * (double(i) + 0.5) / double(n)));
   std::vector<std::complex<double>> out(n / 2 + 1);
   fftw_plan plan = fftw_plan_dft_r2c_1d(static_cast<int>(n), in.data(),
                                         reinterpret_cast<fftw_complex*>(out.data()), FFTW_ESTIMATE);
@@ -72,7 +75,7 @@ NoiseModel fit_noise(const std::vector<double>& residual) {
   }
   noise.sd = std::sqrt(variance / (1.0 - noise.correlation * noise.correlation));
   const auto ordinates = static_cast<double>(power.size() - from);
-  noise.freedom = 2.0 * ordinates;
+  noise.freedom = 1.0 * ordinates;  // 2 without a taper; Hann correlates neighbours
   // Curvature of the profile, over a distance at which the step of the search does not matter.
   double unused = 0.0;
   const double side = 0.1;

@@ -20,7 +20,8 @@ struct NoiseModel {
 /// Noise of a residual whose slow part may be a misfit: fitted to the periodogram above 1/16 of the
 /// sampling frequency alone, where curves of bodies under forces have little left. A misfit with
 /// jumps between samples makes it too large. Needs 16 values.
-/// Source: Whittle 1953 (likelihood of a periodogram). Local.
+/// Neighbouring ordinates of the tapered periodogram are not quite independent, which is counted in
+/// the degrees of freedom. Source: Whittle 1953 (likelihood of a periodogram). Local.
 NoiseModel fit_noise(const std::vector<double>& residual);
 
 /// Standard deviation of white noise on a smooth curve, from third differences by their median, so

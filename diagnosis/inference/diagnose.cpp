@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis/inference/diagnose.hpp"
+
+#include <boost/math/distributions/chi_squared.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "base/units.hpp"
+#include "diagnosis/inference/held_out.hpp"
+
+namespace grouser::diagnosis {
+namespace {
+
+using Eigen::Index;
+
+constexpr double kLevel = 0.01;       // of the baseline's detection
+constexpr double kCheckLevel = 2e-3;  // below, a cause does not explain all
+constexpr double kTemper = 1.0;       // calibrated on the development half of the blind cases
+constexpr int kDraws = 2000;
+constexpr std::size_t kPairSeeds = 4;  // best single causes that are tried with every other
+
+/// Smallest set with 95 %, the most probable first.
+std::vector<std::string> set_of(const std::vector<Candidate>& candidates) {
+  std::vector<std::string> set;
+  double sum = 0.0;
+  for (const Candidate& c : candidates) {
+    if (sum >= 0.95) break;
+    set.push_back(c.id);
+    sum += c.probability;
+  }
+  return set;
+}
+
+bool is_single(const Candidate& c) {
+  return c.family != Family::kBaseline && c.family != Family::kUnknown;
+}
+
+/// Adds every pair of the best single causes with any other that could be both.
+void add_pairs(const Study& study, std::vector<Candidate>& candidates) {
+  std::vector<Candidate> singles;
+  for (const Candidate& c : candidates)
+    if (is_single(c)) singles.push_back(c);
+  std::vector<Candidate> pairs;
+  for (std::size_t a = 0; a < std::min(kPairSeeds, singles.size()); ++a)
+    for (std::size_t b = a + 1; b < singles.size(); ++b)
+      pairs.push_back(combine(study, singles[a], singles[b]));
+  for (Candidate& pair : pairs) {
+    pair.log_prior = singles[0].log_prior - std::log(static_cast<double>(pairs.size()));
+    candidates.push_back(std::move(pair));
+  }
+  weigh(candidates, kTemper);
+}
+
+/// How large the cause is at every sample: its force, or what it changes of its channel.
+std::vector<double> size_of(const Study& study, const Candidate& c, std::size_t r) {
+  const std::size_t n = study.observed()[r].times.size();
+  const Settings settings = study.settings_of(r, c.fit.coordinates, c.fit.p);
+  const Setting setting =
+      c.family == Family::kParameter ? c.hypothesis->widened : c.hypothesis->free[0].setting;
+  std::vector<double> size;
+  if (c.family != Family::kSensor && setting != Setting::kVibration) {
+    size = study.observed()[r].model->force_of(setting, settings);
+  } else {
+    const Settings off = [&] {
+      Settings s = settings;
+      s[Setting::kVibration] = 0.0;
+      for (SettingValues& sensor : s.sensors) sensor = default_values();
+      return s;
+    }();
+    const std::vector<double> with = study.observed()[r].model->run(settings, {});
+    const std::vector<double> without = study.observed()[r].model->run(off, {});
+    const std::size_t from = n * static_cast<std::size_t>(std::max(0, c.channel));
+    for (std::size_t i = 0; i < n; ++i) size.push_back(with[from + i] - without[from + i]);
+  }
+  for (double& value : size) value = std::abs(value);
+  return size;
+}
+
+/// The unknown force of one condition at its samples, with its standard deviation.
+void add_latent(const Study& study, const Candidate& unknown, std::size_t r, Location& at) {
+  std::vector<std::size_t> knots;
+  for (std::size_t j = 0; j < unknown.fit.coordinates.size(); ++j)
+    if (unknown.fit.coordinates[j].knot >= 0 && unknown.fit.coordinates[j].conditions[0] == r)
+      knots.push_back(j);
+  const double step = study.duration_of(r) / static_cast<double>(knots.size() - 1);
+  for (const double time : at.times) {
+    const double x = (time - study.observed()[r].release) / step;
+    double mean = 0.0;
+    double error = 0.0;
+    if (x >= 0.0 && x <= static_cast<double>(knots.size() - 1)) {
+      const auto k = std::min(knots.size() - 2, static_cast<std::size_t>(x));
+      const double part = x - static_cast<double>(k);
+      mean = (1.0 - part) * unknown.fit.value(knots[k]) + part * unknown.fit.value(knots[k + 1]);
+      error = std::max(unknown.fit.deviation(knots[k]), unknown.fit.deviation(knots[k + 1]));
+    }
+    at.latent.push_back(mean);
+    at.latent_error.push_back(error);
+  }
+}
+
+void locate(const Study& study, Diagnosis& d, const Candidate* best) {
+  const auto unknown = std::find_if(d.candidates.begin(), d.candidates.end(),
+                                    [](const Candidate& c) { return c.id == "unknown"; });
+  for (std::size_t r = 0; r < study.observed().size(); ++r) {
+    Location at;
+    at.condition = study.observed()[r].name;
+    at.times = study.observed()[r].times;
+    add_latent(study, *unknown, r, at);
+    if (best != nullptr && best->hypothesis != nullptr) {
+      at.size = size_of(study, *best, r);
+    } else {
+      for (std::size_t i = 0; i < at.times.size(); ++i)
+        at.size.push_back(std::abs(at.latent[i]) > 2.0 * at.latent_error[i] ? std::abs(at.latent[i])
+                                                                            : 0.0);
+    }
+    const double peak = *std::max_element(at.size.begin(), at.size.end());
+    for (double& value : at.size) value = peak > 0.0 ? value / peak : 0.0;
+    for (const double value : at.size) at.mask.push_back(value > 0.25);
+    d.locations.push_back(std::move(at));
+  }
+}
+
+/// Amplitude of a theory's term, and of each condition by itself with the shared settings kept.
+void check_amplitude(const SeriesRecording& recording, const Baseline& baseline, const Study& study,
+                     const Candidate& best, Diagnosis& d) {
+  if (best.hypothesis == nullptr || !best.hypothesis->has_theory()) return;
+  const std::size_t own = best.first_own(study);
+  d.amplitude = best.fit.value(own);
+  d.amplitude_error = best.fit.deviation(own);
+  if (study.observed().size() < 2 || best.id.find('+') != std::string::npos) return;
+  double weights = 0.0;
+  double mean = 0.0;
+  for (std::size_t r = 0; r < study.observed().size(); ++r) {
+    SeriesRecording alone = recording;
+    for (Condition& c : alone.conditions)
+      c.split = c.name == study.observed()[r].name ? "fit" : "held_out";
+    Study one(alone, baseline.terms);
+    one.observed()[0].noise = study.observed()[r].noise;
+    Coordinates coordinates = one.with(*best.hypothesis, -1);
+    // The amplitude is asked of the data, not of the prior.
+    coordinates.back().sd *= 4.0;
+    const Fit now =
+        fit(one, coordinates, Eigen::VectorXd::Zero(static_cast<Index>(coordinates.size())), 12);
+    d.amplitudes.push_back(now.value(coordinates.size() - 1));
+    d.amplitude_errors.push_back(now.deviation(coordinates.size() - 1));
+    const double weight = 1.0 / std::pow(d.amplitude_errors.back(), 2);
+    weights += weight;
+    mean += weight * d.amplitudes.back();
+  }
+  mean /= weights;
+  double q = 0.0;
+  for (std::size_t r = 0; r < d.amplitudes.size(); ++r)
+    q += std::pow((d.amplitudes[r] - mean) / d.amplitude_errors[r], 2);
+  const boost::math::chi_squared chi(static_cast<double>(d.amplitudes.size() - 1));
+  d.invariance = boost::math::cdf(boost::math::complement(chi, q));
+  if (d.invariance < 0.01)
+    d.flags.push_back("its amplitude differs between the conditions beyond chance");
+}
+
+/// Whether a theory's term fits only with an amplitude that is not the theory's.
+bool has_wrong_size(const Study& study, const Candidate& c) {
+  if (c.hypothesis == nullptr || !c.hypothesis->has_theory()) return false;
+  const std::size_t own = c.first_own(study);
+  return c.fit.value(own) + 2.0 * c.fit.deviation(own) < 0.4 ||
+         c.fit.value(own) - 2.0 * c.fit.deviation(own) > 2.5;
+}
+
+/// The answer from weighed candidates; tries pairs when one cause is not enough.
+void decide(const Study& study, Diagnosis& d) {
+  d.word = Word::kNoMismatch;
+  if (!d.detection.is_mismatch(kLevel) || d.candidates[0].family == Family::kBaseline) return;
+  const auto passes = [&](const Candidate& c) {
+    d.check = detect(study, c.fit, kDraws, 2);
+    return !d.check.is_mismatch(kCheckLevel);
+  };
+  if (d.candidates[0].family == Family::kUnknown || !passes(d.candidates[0])) {
+    add_pairs(study, d.candidates);
+    if (d.candidates[0].family == Family::kUnknown || !passes(d.candidates[0])) {
+      d.word = Word::kNoneOfTheKnown;
+      d.cause = "unknown";
+      d.family = Family::kUnknown;
+      return;
+    }
+  }
+  if (has_wrong_size(study, d.candidates[0])) {
+    d.word = Word::kNoneOfTheKnown;
+    d.flags.push_back("it acts like " + d.candidates[0].id +
+                      " but not with its size: the amplitude is " +
+                      rounded(d.candidates[0].fit.value(d.candidates[0].first_own(study))) +
+                      " where theory has 1");
+    d.cause = "unknown";
+    d.family = Family::kUnknown;
+    return;
+  }
+  d.word = study.observed().size() > 1 ? Word::kNamed : Word::kProvisional;
+  d.cause = d.candidates[0].id;
+  d.family = d.candidates[0].family;
+}
+
+void describe_cause(const SeriesRecording& recording, const Study& study, Diagnosis& d) {
+  d.set = set_of(d.candidates);
+  const Candidate& best = d.candidates[0];
+  d.probability = d.word == Word::kNoneOfTheKnown ? 0.0 : best.probability;
+  if (best.channel >= 0) d.channel = recording.channels[std::size_t(best.channel)].name;
+  for (const Candidate& c : d.candidates)
+    if (c.probability > 0.1 * best.probability) d.confusable.push_back(c.id);
+  if (d.word == Word::kNoneOfTheKnown) d.set = {"unknown"};
+  for (std::size_t j = 0; j < study.baseline().size(); ++j) {
+    const double p = best.fit.p(static_cast<Index>(j));
+    if (std::abs(p) > 2.0 && best.family != Family::kParameter)
+      d.flags.push_back(study.baseline()[j].label + " is pushed by " +
+                        std::to_string(p).substr(0, 4) + " standard deviations");
+  }
+}
+
+}  // namespace
+
+const char* word_of(Word word) {
+  switch (word) {
+    case Word::kNoMismatch:
+      return "no_mismatch";
+    case Word::kNamed:
+      return "named";
+    case Word::kProvisional:
+      return "provisional";
+    case Word::kNoneOfTheKnown:
+      return "none_of_the_known";
+  }
+  return "no_mismatch";
+}
+
+const Candidate* Diagnosis::best() const {
+  for (const Candidate& c : candidates)
+    if (c.id == cause) return &c;
+  return nullptr;
+}
+
+Diagnosis diagnose(const SeriesRecording& recording, const Baseline& baseline) {
+  const auto start = std::chrono::steady_clock::now();
+  Diagnosis d;
+  d.recording = recording.name;
+  d.findings = admit(recording);
+  Study study(recording, baseline.terms);
+  d.fitted = study.observed().size();
+  estimate_noise(study);
+  d.candidates = screen(study);
+  weigh(d.candidates, kTemper);
+  const auto none = std::find_if(d.candidates.begin(), d.candidates.end(),
+                                 [](const Candidate& c) { return c.id == "baseline"; });
+  d.detection = detect(study, none->fit, kDraws, 1);
+  decide(study, d);
+  describe_cause(recording, study, d);
+  const Candidate* const best = d.word == Word::kNoneOfTheKnown ? nullptr : d.best();
+  if (d.word != Word::kNoMismatch) locate(study, d, best);
+  if (best != nullptr) {
+    check_amplitude(recording, baseline, study, *best, d);
+    d.held_out = prove(recording, baseline, study, d.candidates, *best);
+  }
+  d.runs = study.runs();
+  d.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return d;
+}
+
+}  // namespace grouser::diagnosis
