@@ -87,7 +87,8 @@ std::string to_json(const Outcome& o) {
               {"wall_seconds", o.wall_seconds},
               {"compute_seconds", o.compute_seconds},
               {"checkpoint_seconds", o.checkpoint_seconds},
-              {"ranks", o.ranks}}
+              {"ranks", o.ranks},
+              {"threads", o.threads}}
              .dump(2) +
          "\n";
 }
@@ -109,6 +110,7 @@ Outcome outcome_from_json(const std::string& text, const std::string& source) {
     j.at("compute_seconds").get_to(o.compute_seconds);
     j.at("checkpoint_seconds").get_to(o.checkpoint_seconds);
     j.at("ranks").get_to(o.ranks);
+    o.threads = j.value("threads", 1);  // records of engines without threads
   });
 }
 

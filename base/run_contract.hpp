@@ -64,6 +64,7 @@ struct Outcome {
   double compute_seconds = 0.0;  ///< time stepping alone [s]
   double checkpoint_seconds = 0.0;
   int ranks = 1;
+  int threads = 1;  ///< of each rank
 };
 
 std::string to_json(const Outcome& outcome);

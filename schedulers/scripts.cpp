@@ -120,9 +120,17 @@ std::string head_comment(const JobSpec& spec) {
          "; written by grouser.\n";
 }
 
+// mpirun would bind each rank, with all its threads, to one core.
+std::string mpirun(const JobSpec& spec) {
+  return "mpirun -n " + std::to_string(spec.ranks) +
+         (spec.threads > 1 ? " --map-by slot:PE=" + std::to_string(spec.threads) + " --bind-to core"
+                           : "");
+}
+
 std::string pbs_chunk(std::int64_t count, std::int64_t ranks, const JobSpec& spec) {
-  std::string text = std::to_string(count) + ":ncpus=" + std::to_string(ranks) +
+  std::string text = std::to_string(count) + ":ncpus=" + std::to_string(ranks * spec.threads) +
                      ":mpiprocs=" + std::to_string(ranks);
+  if (spec.threads > 1) text += ":ompthreads=" + std::to_string(spec.threads);
   if (spec.memory.empty()) return text;
   std::string unit = unit_of(spec.memory);
   unit =
@@ -145,11 +153,9 @@ std::string pbs_select(const JobSpec& spec) {
 }  // namespace
 
 std::map<std::string, std::string> launcher_values(const JobSpec& spec) {
-  return {{"campaign", spec.campaign},
-          {"home", spec.home},
-          {"ranks", std::to_string(spec.ranks)},
-          {"root", spec.root.string()},
-          {"run", spec.label}};
+  return {
+      {"campaign", spec.campaign},  {"home", spec.home}, {"ranks", std::to_string(spec.ranks)},
+      {"root", spec.root.string()}, {"run", spec.label}, {"threads", std::to_string(spec.threads)}};
 }
 
 std::string make_local_script(const JobSpec& spec) {
@@ -157,10 +163,11 @@ std::string make_local_script(const JobSpec& spec) {
   const std::string launcher =
       spec.ranks == 1 ? ""
                       : "mpirun --oversubscribe --bind-to none -n " + std::to_string(spec.ranks);
+  std::string prologue = "export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1\n";
+  // Cores may be shared with others here: threads that wait leave them instead of turning round.
+  if (spec.threads > 1) prologue += "export OMP_WAIT_POLICY=passive\n";
   return "#!/bin/bash\n" + head_comment(spec) +
-         body(spec,
-              {"${GROUSER_JOB:-}",
-               "export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1\n", launcher});
+         body(spec, {"${GROUSER_JOB:-}", prologue, launcher});
 }
 
 std::string make_slurm_script(const JobSpec& spec) {
@@ -170,6 +177,7 @@ std::string make_slurm_script(const JobSpec& spec) {
   };
   option("job-name", job_name(spec.token));
   option("ntasks", std::to_string(spec.ranks));
+  if (spec.threads > 1) option("cpus-per-task", std::to_string(spec.threads));
   if (spec.nodes > 0) option("nodes", std::to_string(spec.nodes));
   if (spec.walltime > 0.0) {
     option("time", slurm_clock(spec.walltime));
@@ -184,8 +192,7 @@ std::string make_slurm_script(const JobSpec& spec) {
   option("output", attempt_files::log(spec.token));
   option("open-mode", "append");
   text += "#SBATCH --no-requeue\n";
-  return text + head_comment(spec) +
-         body(spec, {"${SLURM_JOB_ID:-}", "", "mpirun -n " + std::to_string(spec.ranks)});
+  return text + head_comment(spec) + body(spec, {"${SLURM_JOB_ID:-}", "", mpirun(spec)});
 }
 
 std::string make_pbs_script(const JobSpec& spec) {
@@ -205,7 +212,7 @@ std::string make_pbs_script(const JobSpec& spec) {
   // PBS copies its output file only at the end; the log is to be read while the job runs.
   return text + head_comment(spec) +
          body(spec, {"${PBS_JOBID:-}", "exec >>" + attempt_files::log(spec.token) + " 2>&1\n",
-                     "mpirun -n " + std::to_string(spec.ranks) + " --hostfile \"$PBS_NODEFILE\""});
+                     mpirun(spec) + " --hostfile \"$PBS_NODEFILE\""});
 }
 
 double stop_margin(double walltime) {

@@ -92,6 +92,8 @@ JobSpec job_spec(const JobSettings& shared, const RunRow& run, const ChunkRow& c
   const auto add = [&](const char* option, const std::string& value) {
     spec.engine.insert(spec.engine.end(), {option, value});
   };
+  // Always, so that OMP_NUM_THREADS in a job's environment changes nothing.
+  add("--threads", std::to_string(resources.threads));
   if (bed != nullptr) add("--bed", (shared.root / bed->directory).string());
   if (chunk.until_time) add("--until-time", format_number(*chunk.until_time));
   if (resources.walltime > 0.0) {
@@ -100,6 +102,7 @@ JobSpec job_spec(const JobSettings& shared, const RunRow& run, const ChunkRow& c
     add("--max-seconds", format_number(resources.walltime - margin));
   }
   spec.ranks = resources.ranks;
+  spec.threads = resources.threads;
   spec.nodes = resources.nodes;
   spec.walltime = resources.walltime;
   spec.memory = resources.memory;

@@ -13,7 +13,40 @@ struct Migration {
   const char* sql;
 };
 
-constexpr std::array kMigrations{Migration{1, kSchemaSql}};
+// Attempts know how many threads their ranks had; those of version 1 had one.
+constexpr const char* kThreadsSql = R"sql(
+ALTER TABLE attempt ADD COLUMN threads INTEGER NOT NULL DEFAULT 1;
+
+DROP VIEW v_attempts;
+CREATE VIEW v_attempts AS
+  SELECT a.id AS attempt_id, r.label AS run, c.position AS chunk, a.number, a.token, a.job, a.state,
+         a.code, a.has_outcome, a.outcome_class, a.reason, a.created_at,
+         nullif(a.submitted_at, 0.0) AS submitted_at, nullif(a.running_at, 0.0) AS running_at,
+         nullif(a.ended_at, 0.0) AS ended_at, a.start_step, a.step, a.time AS time_s, a.steps_done,
+         a.ranks, a.threads, a.wall_seconds, a.compute_seconds, a.checkpoint_seconds, a.checkpoint,
+         a.state_hash, a.engine_hash
+  FROM attempt a JOIN run r ON r.id = a.run_id JOIN chunk c ON c.id = a.chunk_id
+  ORDER BY a.run_id, a.number;
+
+DROP VIEW v_ledger;
+CREATE VIEW v_ledger AS
+  SELECT r.id AS run_id, r.label AS run, count(a.id) AS attempts,
+         total(CASE WHEN a.submitted_at > 0 AND a.running_at > 0
+                    THEN max(a.running_at - a.submitted_at, 0.0) END) AS queued_seconds,
+         total(a.wall_seconds) AS wall_seconds,
+         total(a.compute_seconds) AS compute_seconds,
+         total(a.checkpoint_seconds) AS checkpoint_seconds,
+         total(a.wall_seconds - a.compute_seconds - a.checkpoint_seconds) AS other_seconds,
+         total(CASE WHEN a.has_outcome = 0 AND a.running_at > 0 AND a.ended_at > 0
+                    THEN a.ended_at - a.running_at END) AS lost_seconds,
+         total(a.wall_seconds * a.ranks) AS rank_seconds,
+         total(a.wall_seconds * a.ranks * a.threads) AS core_seconds,
+         coalesce(sum(a.steps_done), 0) AS steps_done
+  FROM run r LEFT JOIN attempt a ON a.run_id = r.id
+  GROUP BY r.id ORDER BY r.id;
+)sql";
+
+constexpr std::array kMigrations{Migration{1, kSchemaSql}, Migration{2, kThreadsSql}};
 
 }  // namespace
 

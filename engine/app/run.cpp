@@ -66,7 +66,7 @@ Run::Run(const Communicator& ranks, const EngineOptions& options, const Case& in
       input_(input),
       key_(content_key(input.has_wheel ? input : bed_case(input))),
       started_(started),
-      world_(make_world(ranks, input)),
+      world_(make_world(ranks, input, options.threads)),
       checkpoints_(ranks, options.run_directory / run_files::kCheckpoints,
                    frozen_case(ranks, options.run_directory)) {
   const double dt = world_.settings().time_step;
@@ -86,6 +86,7 @@ Run::Run(const Communicator& ranks, const EngineOptions& options, const Case& in
   if (input_.output.snapshot_interval > 0.0)
     snapshot_steps_ = steps_in(input_.output.snapshot_interval, dt);
   log_time_step(input_);
+  spdlog::info("app ranks={} threads={} of each", ranks_.size(), options_.threads);
 
   on_first_rank(ranks_,
                 [&] { fs::create_directories(options_.run_directory / run_files::kEvents); });
@@ -469,6 +470,7 @@ Outcome Run::outcome(EngineCode code) const {
   out.checkpoint_seconds = checkpoint_seconds_;
   out.compute_seconds = std::max(0.0, elapsed() - checkpoint_seconds_);
   out.ranks = ranks_.size();
+  out.threads = options_.threads;
   return out;
 }
 

@@ -25,6 +25,7 @@ struct EngineOptions {
   std::optional<double> until_time;   ///< [s]
   std::optional<double> max_seconds;  ///< of wall time, from the engine's start [s]
   bool must_continue = false;         ///< refuse to start anew
+  int threads = 1;                    ///< of this rank
 };
 
 /// Asks the running engine to write a checkpoint and end with kPaused; for signal handlers. Local.
