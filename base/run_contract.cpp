@@ -90,7 +90,8 @@ std::string to_json(const Outcome& o) {
               {"compute_seconds", o.compute_seconds},
               {"checkpoint_seconds", o.checkpoint_seconds},
               {"slowest_checkpoint_seconds", o.slowest_checkpoint_seconds},
-              {"ranks", o.ranks}}
+              {"ranks", o.ranks},
+              {"threads", o.threads}}
              .dump(2) +
          "\n";
 }
@@ -115,6 +116,7 @@ Outcome outcome_from_json(const std::string& text, const std::string& source) {
     j.at("checkpoint_seconds").get_to(o.checkpoint_seconds);
     o.slowest_checkpoint_seconds = j.value("slowest_checkpoint_seconds", 0.0);
     j.at("ranks").get_to(o.ranks);
+    o.threads = j.value("threads", 1);  // records of engines without threads
   });
 }
 

@@ -67,6 +67,7 @@ struct Outcome {
   double checkpoint_seconds = 0.0;
   double slowest_checkpoint_seconds = 0.0;  ///< the longest that one took [s]
   int ranks = 1;
+  int threads = 1;  ///< of each rank
 };
 
 std::string to_json(const Outcome& outcome);

@@ -169,6 +169,13 @@ std::string head_comment(const JobSpec& spec) {
          "; written by grouser.\n";
 }
 
+// mpirun would bind each rank, with all its threads, to one core.
+std::string mpirun(const JobSpec& spec) {
+  return "mpirun -n " + std::to_string(spec.ranks) +
+         (spec.threads > 1 ? " --map-by slot:PE=" + std::to_string(spec.threads) + " --bind-to core"
+                           : "");
+}
+
 std::string slurm_options(const JobSpec& spec, const std::string& name) {
   std::string text;
   const auto option = [&](const std::string& key, const std::string& value) {
@@ -176,6 +183,7 @@ std::string slurm_options(const JobSpec& spec, const std::string& name) {
   };
   option("job-name", name);
   option("ntasks", std::to_string(spec.ranks));
+  if (spec.threads > 1) option("cpus-per-task", std::to_string(spec.threads));
   if (spec.nodes > 0) option("nodes", std::to_string(spec.nodes));
   if (spec.walltime > 0.0) {
     option("time", slurm_clock(spec.walltime));
@@ -195,8 +203,9 @@ std::string slurm_options(const JobSpec& spec, const std::string& name) {
 }
 
 std::string pbs_chunk(std::int64_t count, std::int64_t ranks, const JobSpec& spec) {
-  std::string text = std::to_string(count) + ":ncpus=" + std::to_string(ranks) +
+  std::string text = std::to_string(count) + ":ncpus=" + std::to_string(ranks * spec.threads) +
                      ":mpiprocs=" + std::to_string(ranks);
+  if (spec.threads > 1) text += ":ompthreads=" + std::to_string(spec.threads);
   if (spec.memory.empty()) return text;
   std::string unit = unit_of(spec.memory);
   unit =
@@ -219,11 +228,9 @@ std::string pbs_select(const JobSpec& spec) {
 }  // namespace
 
 std::map<std::string, std::string> launcher_values(const JobSpec& spec) {
-  return {{"campaign", spec.campaign},
-          {"home", spec.home},
-          {"ranks", std::to_string(spec.ranks)},
-          {"root", spec.root.string()},
-          {"run", spec.label}};
+  return {
+      {"campaign", spec.campaign},  {"home", spec.home}, {"ranks", std::to_string(spec.ranks)},
+      {"root", spec.root.string()}, {"run", spec.label}, {"threads", std::to_string(spec.threads)}};
 }
 
 std::string make_local_script(const JobSpec& spec) {
@@ -231,10 +238,11 @@ std::string make_local_script(const JobSpec& spec) {
   const std::string launcher =
       spec.ranks == 1 ? ""
                       : "mpirun --oversubscribe --bind-to none -n " + std::to_string(spec.ranks);
+  std::string prologue = "export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1\n";
+  // Cores may be shared with others here: threads that wait leave them instead of turning round.
+  if (spec.threads > 1) prologue += "export OMP_WAIT_POLICY=passive\n";
   return "#!/bin/bash\n" + head_comment(spec) +
-         body(spec,
-              {"${GROUSER_JOB:-}",
-               "export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1\n", launcher, ""});
+         body(spec, {"${GROUSER_JOB:-}", prologue, launcher, ""});
 }
 
 std::string make_slurm_script(const JobSpec& spec) {
@@ -247,7 +255,7 @@ std::string make_slurm_script(const JobSpec& spec) {
   return text + head_comment(spec) +
          body(spec, {"${SLURM_ARRAY_TASK_ID:+${SLURM_ARRAY_JOB_ID}_}"
                      "${SLURM_ARRAY_TASK_ID:-${SLURM_JOB_ID:-}}",
-                     own_log, "mpirun -n " + std::to_string(spec.ranks), kSlurmSuccessor});
+                     own_log, mpirun(spec), kSlurmSuccessor});
 }
 
 std::string make_slurm_array_script(const ArraySpec& spec) {
@@ -291,8 +299,7 @@ std::string make_pbs_script(const JobSpec& spec) {
   // PBS copies its output file only at the end; the log is to be read while the job runs.
   return text + head_comment(spec) +
          body(spec, {"${PBS_JOBID:-}", "exec >>" + attempt_files::log(spec.token) + " 2>&1\n",
-                     "mpirun -n " + std::to_string(spec.ranks) + " --hostfile \"$PBS_NODEFILE\"",
-                     kPbsSuccessor});
+                     mpirun(spec) + " --hostfile \"$PBS_NODEFILE\"", kPbsSuccessor});
 }
 
 double stop_margin(double walltime) {

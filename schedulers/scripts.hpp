@@ -19,9 +19,10 @@ struct JobSpec {
   std::string home;                     ///< of the user who submits
   std::vector<std::string> engine;      ///< program and its arguments, without ranks
   std::int64_t ranks = 1;
-  std::int64_t nodes = 0;  ///< 0 = the scheduler decides
-  double walltime = 0.0;   ///< of the job [s]; 0 = none
-  std::string memory;      ///< per node
+  std::int64_t threads = 1;  ///< of each rank
+  std::int64_t nodes = 0;    ///< 0 = the scheduler decides
+  double walltime = 0.0;     ///< of the job [s]; 0 = none
+  std::string memory;        ///< per node
   std::string partition;
   std::string account;
   std::string qos;

@@ -20,6 +20,7 @@ import tempfile
 
 DECKS = pathlib.Path(__file__).resolve().parent
 RANKS = (1, 2)
+THREADS = 'threads2'  # one rank of two threads; beside peers on two cores, however they use them
 PROGRAM = {'lammps': 'lmp', 'liggghts': 'liggghts', 'yade': 'yade'}  # of the Debian packages
 # Case: code -> input deck.
 CASES = {
@@ -54,7 +55,7 @@ class Bench:
                           'wheel': arguments.wheel}
         self.warm_up, self.steps, self.rounds = (100, 100, 1) if arguments.quick else (200, 400, 5)
         self.scratch = pathlib.Path(tempfile.mkdtemp(prefix='dem_bench-'))
-        self.rates = {}    # (case, code, ranks) -> particle-steps/s of each round
+        self.rates = {}    # (case, code, ranks or THREADS) -> particle-steps/s of each round
         self.beds = {}     # the same -> what dem_bench measures of the state left
         self.builds = {}   # the same -> neighbour lists made while timed, where the code tells
         self.faults = {}   # (case, code) -> why there is no rate
@@ -64,11 +65,13 @@ class Bench:
 
     def command(self, case, code, ranks, state):
         deck = CASES[case][code]
-        mpi = ['mpirun', '--oversubscribe', '--bind-to', 'none', '-np', str(ranks)]
+        threads = ['--threads', '2'] if ranks == THREADS else []
+        mpi = ['mpirun', '--oversubscribe', '--bind-to', 'none', '-np',
+               '1' if threads else str(ranks)]
         steps, warm_up, directory = str(self.steps), str(self.warm_up), self.directory[case]
         if code == 'grouser':
             return mpi + [self.program, 'time', directory, '--steps', steps, '--warm-up', warm_up,
-                          '--state', state] + deck
+                          '--state', state] + threads + deck
         if code == 'yade':
             return ['yade', '-n', '-x', f'-j{ranks}', str(DECKS / deck), directory, warm_up, steps,
                     state]
@@ -110,6 +113,8 @@ class Bench:
                 for case, codes in CASES.items():
                     for code in codes:
                         self.run(case, code, ranks)
+                        if code == 'grouser' and ranks == 2:
+                            self.run(case, code, THREADS)
 
     def peers(self, case):
         """How many peers were timed."""
@@ -117,8 +122,9 @@ class Bench:
 
     def ratio(self, case, ranks):
         """Median over rounds of grouser's rate over the best peer's of the same round."""
-        peers = [self.rates[case, code, ranks] for code in CASES[case]
-                 if code != 'grouser' and (case, code, ranks) in self.rates]
+        cores = 2 if ranks == THREADS else ranks
+        peers = [self.rates[case, code, cores] for code in CASES[case]
+                 if code != 'grouser' and (case, code, cores) in self.rates]
         own = self.rates.get((case, 'grouser', ranks))
         if not own or not peers:
             return None
@@ -162,17 +168,18 @@ def print_rates(bench):
             if (case, code) in bench.faults:
                 row = [bench.faults[case, code], '', '']
             else:
-                one, two = (cell(bench.rates.get((case, code, ranks))) for ranks in RANKS)
-                row = [one, '-', two] if code == 'yade' else [one, two, '-']
+                one, two, threads = (cell(bench.rates.get((case, code, ranks)))
+                                     for ranks in (*RANKS, THREADS))
+                row = [one, '-', two] if code == 'yade' else [one, two, threads]
             print('| ' + ' | '.join([case, code] + row) + ' |')
-        ratios = [bench.ratio(case, ranks) for ranks in RANKS]
+        ratios = [bench.ratio(case, ranks) for ranks in (*RANKS, THREADS)]
         row = ['-' if ratio is None else f'**{ratio:.2f}**' for ratio in ratios]
         name = f'grouser / best of {bench.peers(case)} peers'
-        print('| ' + ' | '.join([case, name] + row) + ' | - |')
+        print('| ' + ' | '.join([case, name] + row) + ' |')
     print('\nM particle-steps/s, median (least-most) of '
           f'{bench.rounds} rounds of {bench.steps} steps after {bench.warm_up}; '
           f'{", ".join(f"{case} {count}" for case, count in bench.particles.items())} particles. '
-          'The engine has no threads yet.')
+          'Two threads are compared with the best peer on two cores.')
     if bench.memory:
         print(f'Memory of grouser, plain, 1 rank: {statistics.median(bench.memory):.0f} bytes per '
               'particle.')
@@ -201,7 +208,7 @@ def write_json(bench, file):
     out = {}
     for case, codes in CASES.items():
         out[f'dem.peers.{case}'] = bench.peers(case)
-        for ranks in RANKS:
+        for ranks in (*RANKS, THREADS):
             if (ratio := bench.ratio(case, ranks)) is not None:
                 out[f'dem.ratio_vs_best_peer.{case}.{ranks}'] = ratio
             for code in codes:

@@ -7,8 +7,8 @@
 
 namespace grouser {
 
-/// Whether this machine can run the campaign's jobs, for scheduler `local`: at most four ranks per
-/// core. Problems are appended. Local.
+/// Whether this machine can run the campaign's jobs, for scheduler `local`: at most four ranks or
+/// threads per core. Problems are appended. Local.
 void check_machine(const CampaignFile& file, std::vector<Problem>& problems);
 
 }  // namespace grouser

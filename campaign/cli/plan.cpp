@@ -77,6 +77,8 @@ int plan_verb(const Options& options) {
             << "\n"
             << jobs << " jobs at least, scheduler " << plan.settings.scheduler << ", "
             << resources.ranks << " ranks each"
+            << (resources.threads > 1 ? " of " + std::to_string(resources.threads) + " threads"
+                                      : "")
             << (resources.walltime > 0.0 ? ", walltime " + duration_text(resources.walltime) : "")
             << "\n"
             << step_lines(plan);

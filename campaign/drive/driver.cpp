@@ -183,7 +183,7 @@ std::int64_t Driver::job_limit() const {
   const Resources& resources = shared_.settings.resources;
   if (resources.concurrent > 0) return resources.concurrent;
   if (kind_.is_batch) return std::numeric_limits<std::int64_t>::max();
-  return std::max<std::int64_t>(1, available_cores() / resources.ranks);
+  return std::max<std::int64_t>(1, available_cores() / (resources.ranks * resources.threads));
 }
 
 bool Driver::is_pausing() {

@@ -28,6 +28,7 @@ void record_outcome(AttemptRow& attempt, const Evidence& evidence) {
   attempt.steps_done = outcome.steps_done;
   attempt.particles = outcome.particles;
   attempt.ranks = outcome.ranks;
+  attempt.threads = outcome.threads;
   attempt.wall_seconds = outcome.wall_seconds;
   attempt.compute_seconds = outcome.compute_seconds;
   attempt.checkpoint_seconds = outcome.checkpoint_seconds;

@@ -72,6 +72,7 @@ Begun begin_attempt(const JobSettings& shared, Store& store, const Submission& s
   attempt.time = run.time;
   attempt.engine_hash = shared.engine_hash;
   attempt.ranks = static_cast<int>(shared.settings.resources.ranks);
+  attempt.threads = static_cast<int>(shared.settings.resources.threads);
   if (run.step == 0 || run.engine_hash.empty()) run.engine_hash = shared.engine_hash;
   run.state = State::kSubmitting;
   run.reason.clear();
@@ -140,6 +141,8 @@ JobSpec job_spec(const JobSettings& shared, const RunRow& run, const ChunkRow& c
   const auto add = [&](const char* option, const std::string& value) {
     spec.engine.insert(spec.engine.end(), {option, value});
   };
+  // Always, so that OMP_NUM_THREADS in a job's environment changes nothing.
+  add("--threads", std::to_string(resources.threads));
   if (bed != nullptr) add("--bed", (shared.root / bed->directory).string());
   if (chunk.until_time) add("--until-time", format_number(*chunk.until_time));
   if (resources.walltime > 0.0) {
@@ -150,6 +153,7 @@ JobSpec job_spec(const JobSettings& shared, const RunRow& run, const ChunkRow& c
   if (shared.checkpoint_seconds > 0.0)
     add("--checkpoint-seconds", format_number(shared.checkpoint_seconds));
   spec.ranks = resources.ranks;
+  spec.threads = resources.threads;
   spec.nodes = resources.nodes;
   spec.walltime = resources.walltime;
   spec.memory = resources.memory;

@@ -74,8 +74,9 @@ void describe_batch_words(FieldVisitor& v, Resources& r) {
   v.check("account", is_batch_name(r.account), "has characters a scheduler does not take", plain);
   v.word({"qos", "quality of service", kOptional}, r.qos, {});
   v.check("qos", is_batch_name(r.qos), "has characters a scheduler does not take", plain);
-  v.word({"launcher", "starts the ranks; takes {ranks} and others, see above", kOptional},
-         r.launcher, {});
+  v.word(
+      {"launcher", "starts the ranks; takes {ranks}, {threads} and others, see above", kOptional},
+      r.launcher, {});
   v.check("launcher", is_one_line(r.launcher), "has control characters", "write it on one line");
   check_braces(v, "launcher", r.launcher, launcher_names());
   v.word(
@@ -87,6 +88,8 @@ void describe_batch_words(FieldVisitor& v, Resources& r) {
 
 void describe_resources(FieldVisitor& v, Resources& r, const std::string& scheduler) {
   v.integer({"ranks", "MPI ranks of one run", kOptional}, r.ranks, 1, 10'000'000);
+  v.integer({"threads", "threads of each rank; the results do not depend on them", kOptional},
+            r.threads, 1, 1024);
   v.integer({"nodes", "nodes of one run; 0 = the scheduler decides", kOptional}, r.nodes, 0,
             1'000'000);
   v.rule("nodes", r.nodes <= r.ranks, "are more than ranks", "every node needs a rank");
@@ -100,7 +103,8 @@ void describe_resources(FieldVisitor& v, Resources& r, const std::string& schedu
           "batch systems count in minutes, and the engine stops " +
               format_number(stop_margin(kShortestBatchWalltime)) + " s or more before the end");
   describe_batch_words(v, r);
-  v.integer({"concurrent", "jobs at once; 0 = cores / ranks for local, else no limit", kOptional},
+  v.integer({"concurrent", "jobs at once; 0 = cores / (ranks x threads) for local, else no limit",
+             kOptional},
             r.concurrent, 0, 1'000'000);
   v.flag({"array", "jobs that may start together become one job array (slurm)", kOptional},
          r.array);

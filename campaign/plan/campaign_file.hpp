@@ -13,15 +13,16 @@ namespace grouser {
 /// What one attempt of a run asks of the machine.
 struct Resources {
   std::int64_t ranks = 1;
-  std::int64_t nodes = 0;  ///< 0 = the scheduler decides
-  double walltime = 0.0;   ///< of one job [s]; 0 = no limit, for `local` only
-  std::string memory;      ///< per node, as the scheduler spells it: "64G"
-  std::string partition;   ///< Slurm's partition, PBS's queue
+  std::int64_t threads = 1;  ///< of each rank
+  std::int64_t nodes = 0;    ///< 0 = the scheduler decides
+  double walltime = 0.0;     ///< of one job [s]; 0 = no limit, for `local` only
+  std::string memory;        ///< per node, as the scheduler spells it: "64G"
+  std::string partition;     ///< Slurm's partition, PBS's queue
   std::string account;
   std::string qos;
   std::string launcher;         ///< starts the ranks, for example "srun --mpi=pmix"
   std::string setup_file;       ///< shell file read before the engine starts: modules, paths
-  std::int64_t concurrent = 0;  ///< jobs at once; 0 = cores / ranks for `local`, else no limit
+  std::int64_t concurrent = 0;  ///< jobs at once; 0 = as cores allow for `local`, else no limit
   bool array = false;           ///< jobs that may start together are submitted as one (slurm)
 };
 

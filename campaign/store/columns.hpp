@@ -46,6 +46,7 @@ void columns_of_attempt(Visitor& v, Row& r) {
       v("ended_at", r.ended_at);
   v("start_step", r.start_step), v("step", r.step), v("time", r.time);
   v("steps_done", r.steps_done), v("particles", r.particles), v("ranks", r.ranks);
+  v("threads", r.threads);
   v("wall_seconds", r.wall_seconds), v("compute_seconds", r.compute_seconds);
   v("checkpoint_seconds", r.checkpoint_seconds), v("checkpoint", r.checkpoint);
   v("state_hash", r.state_hash), v("engine_hash", r.engine_hash), v("absences", r.absences);

@@ -104,6 +104,7 @@ struct AttemptRow {
   std::int64_t steps_done = 0;
   std::int64_t particles = 0;
   int ranks = 0;
+  int threads = 1;  ///< of each rank
   double wall_seconds = 0.0;
   double compute_seconds = 0.0;
   double checkpoint_seconds = 0.0;

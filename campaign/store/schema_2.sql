@@ -1,4 +1,4 @@
--- Version 2: the journal's number, what a seam and a loss are judged by, hangs and hosts.
+-- Version 2: the journal's number, what a seam and a loss are judged by, hangs, hosts and threads.
 
 CREATE TABLE journal (
   id     INTEGER PRIMARY KEY CHECK (id = 1),
@@ -7,6 +7,7 @@ CREATE TABLE journal (
 INSERT INTO journal (id, number) VALUES (1, 0);
 
 ALTER TABLE run ADD COLUMN engine_hash TEXT NOT NULL DEFAULT '';
+ALTER TABLE attempt ADD COLUMN threads INTEGER NOT NULL DEFAULT 1;
 ALTER TABLE attempt ADD COLUMN host TEXT NOT NULL DEFAULT '';
 ALTER TABLE attempt ADD COLUMN progress_step INTEGER NOT NULL DEFAULT 0;
 ALTER TABLE attempt ADD COLUMN progress_at REAL NOT NULL DEFAULT 0.0;
@@ -23,8 +24,8 @@ CREATE VIEW v_attempts AS
          a.code, a.has_outcome, a.outcome_class, a.reason, a.host, a.created_at,
          nullif(a.submitted_at, 0.0) AS submitted_at, nullif(a.running_at, 0.0) AS running_at,
          nullif(a.ended_at, 0.0) AS ended_at, a.start_step, a.step, a.time AS time_s, a.steps_done,
-         a.ranks, a.wall_seconds, a.compute_seconds, a.checkpoint_seconds, a.useful_seconds,
-         a.lost_seconds, a.hung_seconds, a.checkpoint, a.state_hash, a.engine_hash
+         a.ranks, a.threads, a.wall_seconds, a.compute_seconds, a.checkpoint_seconds,
+         a.useful_seconds, a.lost_seconds, a.hung_seconds, a.checkpoint, a.state_hash, a.engine_hash
   FROM attempt a JOIN run r ON r.id = a.run_id JOIN chunk c ON c.id = a.chunk_id
   ORDER BY a.run_id, a.number;
 
@@ -57,9 +58,10 @@ CREATE VIEW v_ledger AS
          total(hung_seconds) AS hung_seconds,
          total(useful_seconds) / nullif(total(occupied), 0.0) AS goodput,
          total(occupied * ranks) AS rank_seconds,
+         total(occupied * ranks * threads) AS core_seconds,
          coalesce(sum(steps_done), 0) AS steps_done
-  FROM (SELECT r.id AS run_id, r.label AS run, a.id AS attempt_id, a.ranks, a.wall_seconds,
-               a.compute_seconds, a.checkpoint_seconds, a.useful_seconds, a.lost_seconds,
+  FROM (SELECT r.id AS run_id, r.label AS run, a.id AS attempt_id, a.ranks, a.threads,
+               a.wall_seconds, a.compute_seconds, a.checkpoint_seconds, a.useful_seconds, a.lost_seconds,
                a.hung_seconds, a.steps_done,
                CASE WHEN a.submitted_at > 0 AND a.running_at > 0
                     THEN max(a.running_at - a.submitted_at, 0.0) END AS queued,

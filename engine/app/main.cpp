@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <optional>
@@ -78,6 +79,15 @@ Outcome run(const Communicator& ranks, EngineOptions options, Run::Clock::time_p
   }
 }
 
+constexpr int kMostThreads = 1024;
+
+// OMP_NUM_THREADS may be a list, one number for each depth; the first counts.
+int usual_threads() {
+  const char* const text = std::getenv("OMP_NUM_THREADS");
+  const int given = text == nullptr ? 1 : std::atoi(text);
+  return std::clamp(given, 1, kMostThreads);
+}
+
 int report(const Communicator& ranks, const EngineOptions& options, const Outcome& outcome) {
   const int code = static_cast<int>(outcome.code);
   if (ranks.rank() != 0) return code;
@@ -114,6 +124,10 @@ int main(int argc, char** argv) {
   app.add_option("--checkpoint-seconds", options.checkpoint_seconds,
                  "wall time between checkpoints, in place of output.checkpoint_interval [s]")
       ->check(CLI::PositiveNumber);
+  options.threads = usual_threads();
+  app.add_option("--threads", options.threads,
+                 "threads of each rank; without it OMP_NUM_THREADS, else 1")
+      ->check(CLI::Range(1, kMostThreads));
   std::string restart = "auto";
   app.add_option("--restart", restart,
                  "auto: continue from the newest good checkpoint, or start; "

@@ -69,7 +69,7 @@ Run::Run(const Communicator& ranks, const EngineOptions& options, const Case& in
       input_(input),
       key_(content_key(input.has_wheel ? input : bed_case(input))),
       started_(started),
-      world_(make_world(ranks, input)),
+      world_(make_world(ranks, input, options.threads)),
       ledger_(ranks),
       checkpoints_(ranks, options.run_directory / run_files::kCheckpoints,
                    frozen_case(ranks, options.run_directory)) {
@@ -90,6 +90,7 @@ Run::Run(const Communicator& ranks, const EngineOptions& options, const Case& in
   if (input_.output.snapshot_interval > 0.0)
     snapshot_steps_ = steps_in(input_.output.snapshot_interval, dt);
   log_time_step(input_);
+  spdlog::info("app ranks={} threads={} of each", ranks_.size(), options_.threads);
 
   on_first_rank(ranks_,
                 [&] { fs::create_directories(options_.run_directory / run_files::kEvents); });
@@ -484,6 +485,7 @@ Outcome Run::outcome(EngineCode code) const {
   out.slowest_checkpoint_seconds = slowest_checkpoint_;
   out.compute_seconds = std::max(0.0, elapsed() - checkpoint_seconds_);
   out.ranks = ranks_.size();
+  out.threads = options_.threads;
   return out;
 }
 

@@ -30,6 +30,7 @@ struct EngineOptions {
   std::optional<double> checkpoint_seconds;  ///< wall time between checkpoints, in place of the
                                              ///< case's interval [s]
   bool must_continue = false;                ///< refuse to start anew
+  int threads = 1;                           ///< of this rank
 };
 
 /// Asks the running engine to write a checkpoint and end with kPaused; for signal handlers. Local.

@@ -35,12 +35,13 @@ Surface preparation_surface(const Case& input) {
 
 }  // namespace
 
-World make_world(const Communicator& ranks, const Case& input) {
+World make_world(const Communicator& ranks, const Case& input, int threads) {
   const SizeCurve sizes(input.grains);
   const double walls = input.has_wheel
                            ? input.box.depth + input.wheel.diameter
                            : std::max(input.box.depth, Filling(input).height() + sizes.largest());
   WorldSettings settings;
+  settings.threads = threads;
   settings.low = {0.0, 0.0, 0.0};
   settings.high = {input.box.length, input.box.width, walls + kHeadroom};
   settings.top = input.has_wheel ? input.bed.depth : walls;

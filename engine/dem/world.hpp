@@ -30,7 +30,7 @@ struct WorldSettings {
   double top = 0.0;
   /// Space is cut anew when the slowest rank takes this many times the mean; infinite = never
   double uneven = 1.05;
-  int threads = 1;  ///< of this rank
+  int threads = 1;  ///< of this rank; change no bit
   std::string law = "hertz_mindlin";
   std::string rolling = "none";
   Solid grain;

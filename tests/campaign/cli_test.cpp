@@ -137,6 +137,23 @@ TEST(CheckedPlan, RefusesMoreLocalRanksThanTheMachineCanCarry) {
       << text;
 }
 
+TEST(CheckedPlan, RefusesMoreLocalThreadsThanTheMachineCanCarry) {
+  TemporaryDirectory directory;
+  const auto file = directory.path() / "c.yaml";
+  const auto with_threads = [&](int threads) {
+    write_atomic(
+        file, small_campaign("resources: {ranks: 2, threads: " + std::to_string(threads) + "}\n"));
+    return problems_of([&] { checked_plan(file.string(), ""); });
+  };
+  const int cores = available_cores();
+  EXPECT_EQ(with_threads(2 * cores), "");
+  const std::string text = with_threads(2 * cores + 1);
+  EXPECT_NE(text.find(":22:32: resources.threads: 2 ranks of " + std::to_string(2 * cores + 1) +
+                      " threads each are too many for scheduler local here"),
+            std::string::npos)
+      << text;
+}
+
 // 94.6 us is the Rayleigh time of the small campaign's smallest grain.
 TEST(CheckedPlan, RefusesATimeStepOverTheRayleighTimeAndWarnsOfALongOne) {
   TemporaryDirectory directory;

@@ -110,6 +110,18 @@ TEST(CampaignErrors, MoreRanksThanCubesOfAContactsReachAreRefusedWithWhatFits) {
                 "of the 10.3 mm that a contact reaches; use at most 2090"});
 }
 
+TEST(CampaignErrors, ThreadsAreAWholeNumberFromOneOn) {
+  const auto with_threads = [](const std::string& threads) {
+    return problems_of(small_campaign("resources: {ranks: 1, threads: " + threads + "}\n"));
+  };
+  EXPECT_EQ(with_threads("2"), "");
+  for (const char* nonsense : {"0", "-2", "1025"})
+    expect_parts(with_threads(nonsense),
+                 {"c.yaml:22:32: resources.threads:", "is out of range; allowed is 1 to 1024"});
+  expect_parts(with_threads("all"),
+               {"c.yaml:22:32: resources.threads: 'all' is not a whole number"});
+}
+
 TEST(CampaignErrors, TwoPointsWithTheSameCaseAreRefused) {
   const std::string text = problems_of(small_campaign(R"(sweep:
   - axis: slip
@@ -199,7 +211,7 @@ sweep:
             "c.yaml:22:8: title: knows no {campain}, {date}; did you mean {campaign}? "
             "known here: {campaign}\n"
             "c.yaml:24:13: resources.launcher: knows no {rank}, {ROOT}; did you mean {ranks}? "
-            "known here: {campaign}, {home}, {ranks}, {root}, {run}\n"
+            "known here: {campaign}, {home}, {ranks}, {root}, {run}, {threads}\n"
             "c.yaml:25:15: resources.setup_file: knows no {hom}; did you mean {home}? "
             "known here: {campaign}, {home}\n"
             "c.yaml:29:62: case.wheel.stl_file: takes no {name}; "

@@ -85,6 +85,27 @@ TEST(Scripts, WhatALaunchersNamesStandForIsQuotedAsOneWord) {
   }
 }
 
+TEST(Scripts, ThreadsGetTheirCoresAndAreNotBoundToOne) {
+  JobSpec spec = full_spec();
+  spec.threads = 4;
+  spec.launcher.clear();
+  const auto has = [](const std::string& script, const std::string& part) {
+    EXPECT_NE(script.find(part), std::string::npos) << part << " in\n" << script;
+  };
+  const std::string slurm = make_slurm_script(spec);
+  has(slurm, "\n#SBATCH --ntasks=10\n#SBATCH --cpus-per-task=4\n");
+  has(slurm, "\nmpirun -n 10 --map-by slot:PE=4 --bind-to core '/opt/grouser");
+  const std::string pbs = make_pbs_script(spec);
+  has(pbs,
+      "select=1:ncpus=16:mpiprocs=4:ompthreads=4:mem=64gb+2:ncpus=12:mpiprocs=3:ompthreads=4:"
+      "mem=64gb\n");
+  has(pbs, "mpirun -n 10 --map-by slot:PE=4 --bind-to core --hostfile");
+  has(make_local_script(spec), "--bind-to none -n 10 ");
+  has(make_local_script(spec), "\nexport OMP_WAIT_POLICY=passive\n");
+  spec.launcher = "srun -n {ranks} -c {threads}";
+  has(make_slurm_script(spec), "'srun' '-n' '10' '-c' '4'");
+}
+
 TEST(Scripts, OfEveryKindAreGoodShell) {
   TemporaryDirectory directory;
   for (const std::string& name : scheduler_names()) {
