@@ -18,7 +18,7 @@ using Eigen::Index;
 
 constexpr double kLevel = 0.01;       // of the baseline's detection
 constexpr double kCheckLevel = 2e-3;  // below, a cause does not explain all
-constexpr double kTemper = 1.0;       // calibrated on the development half of the blind cases
+constexpr double kTemper = 1.0;       // power of the evidence; 1 as no calibration says otherwise
 constexpr int kDraws = 2000;
 constexpr std::size_t kPairSeeds = 4;  // best single causes that are tried with every other
 
@@ -195,7 +195,7 @@ void decide(const Study& study, Diagnosis& d) {
     d.family = Family::kUnknown;
     return;
   }
-  d.word = study.observed().size() > 1 ? Word::kNamed : Word::kProvisional;
+  d.word = strongest_word(study.observed().size());
   d.cause = d.candidates[0].id;
   d.family = d.candidates[0].family;
 }
@@ -230,6 +230,10 @@ const char* word_of(Word word) {
       return "none_of_the_known";
   }
   return "no_mismatch";
+}
+
+Word strongest_word(std::size_t conditions, bool is_calibrated) {
+  return is_calibrated && conditions > 1 ? Word::kNamed : Word::kProvisional;
 }
 
 const Candidate* Diagnosis::best() const {

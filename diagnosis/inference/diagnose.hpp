@@ -12,6 +12,14 @@ namespace grouser::diagnosis {
 enum class Word { kNoMismatch, kNamed, kProvisional, kNoneOfTheKnown };
 const char* word_of(Word word);
 
+/// Whether the method's rates were measured on recordings that it was not developed on. They were
+/// not: no verdict is stronger than provisional, and every one says so.
+inline constexpr bool kIsCalibrated = false;
+
+/// How strongly a cause may be named from so many fitted conditions: kNamed by a calibrated method
+/// from two or more, else kProvisional. Local.
+Word strongest_word(std::size_t conditions, bool is_calibrated = kIsCalibrated);
+
 /// What the baseline has on and how it is run.
 struct Baseline {
   std::string model = "sphere_ode";
@@ -49,6 +57,7 @@ struct HeldOut {
 struct Diagnosis {
   std::string recording;
   Word word = Word::kNoMismatch;
+  bool is_calibrated = kIsCalibrated;
   std::string cause;  ///< id, two with `+`, `unknown` or ``
   Family family = Family::kBaseline;
   std::string channel;                  ///< of a sensor's fault

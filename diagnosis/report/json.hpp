@@ -10,7 +10,8 @@ namespace grouser::diagnosis {
 /// The answer as JSON text. Format: docs/reference/formats/diagnosis.md. Local.
 std::string to_json(const Diagnosis& diagnosis);
 
-/// One sentence that says the verdict with its odds. Local.
+/// The verdict with its odds, and how far it may be trusted: of a method that is not calibrated,
+/// the false alarms of its development and where they are documented. Local.
 std::string sentence(const Diagnosis& diagnosis);
 
 }  // namespace grouser::diagnosis
