@@ -84,6 +84,9 @@ struct Alarms {
   int scan = 0;
   int stress = 0;
   int any = 0;
+  double mean_global = 0.0;
+  double mean_scan = 0.0;
+  double mean_stress = 0.0;
 };
 
 Alarms alarms_of_the_model_itself(int trials) {
@@ -98,6 +101,9 @@ Alarms alarms_of_the_model_itself(int trials) {
     alarms.scan += d.p_scan <= 0.05;
     alarms.stress += d.p_stress <= 0.05;
     alarms.any += d.p <= 0.05;
+    alarms.mean_global += d.p_global / trials;
+    alarms.mean_scan += d.p_scan / trials;
+    alarms.mean_stress += d.p_stress / trials;
   }
   return alarms;
 }
@@ -111,6 +117,10 @@ TEST(Detection, OfTheModelItselfRaisesAlarmsAtTheStatedRate) {
   EXPECT_GT(alarms.global, 0);
   EXPECT_GT(alarms.scan, 0);
   EXPECT_GT(alarms.stress, 0);
+  // Chances are even between 0 and 1: standard error of their mean sqrt(1/12/200) = 0.0204, four of
+  // them. Fails when the draws are not projected as the fit is.
+  for (const double mean : {alarms.mean_global, alarms.mean_scan, alarms.mean_stress})
+    EXPECT_NEAR(mean, 0.5025, 0.082);
   // Three times the least is at most the stated 5 %.
   EXPECT_LE(alarms.any, 10 + 12.3);
 }
