@@ -134,8 +134,11 @@ class WordsOf : public FieldVisitor {
   void word(const Field& field, std::string&, const std::vector<std::string>& choices) override {
     if (key_ == field.key) words = choices;
   }
-  void group(const Field&, const Body& body) override { body(*this); }
-  void optional_group(const Field&, bool&, const Body& body) override { body(*this); }
+  // Other groups have laws of their own.
+  void group(const Field& field, const Body& body) override {
+    if (std::string_view(field.key) == "contact") body(*this);
+  }
+  void optional_group(const Field&, bool&, const Body&) override {}
   void list(const Field&, std::size_t, const std::function<void(std::size_t)>&,
             const ItemBody&) override {}
   void rule(const char*, bool, const std::string&, const std::string&) override {}
