@@ -60,9 +60,20 @@ double edge(double at) {
   return std::abs(at) < kBeyond ? at : std::copysign(std::numeric_limits<double>::infinity(), at);
 }
 
+// Where a side of a cut has no loads Zoltan puts the cut at infinity: a box lies beyond everything
+// there, or ends before it begins.
+bool is_inside_out(const Box& box) {
+  constexpr double kBeyond = std::numeric_limits<double>::infinity();
+  const auto is_so = [](double low, double high) {
+    return low > high || low == kBeyond || high == -kBeyond;
+  };
+  return is_so(box.low.x, box.high.x) || is_so(box.low.y, box.high.y) ||
+         is_so(box.low.z, box.high.z);
+}
+
 }  // namespace
 
-Decomposition balanced(const Communicator& ranks, const std::vector<Load>& loads) {
+std::optional<Decomposition> balanced(const Communicator& ranks, const std::vector<Load>& loads) {
   static const int started = [] {
     float version = 0.0F;
     return Zoltan_Initialize(0, nullptr, &version);
@@ -106,6 +117,7 @@ Decomposition balanced(const Communicator& ranks, const std::vector<Load>& loads
                                  &box.high.x, &box.high.y, &box.high.z) == ZOLTAN_OK);
     box.low = {edge(box.low.x), edge(box.low.y), edge(box.low.z)};
     box.high = {edge(box.high.x), edge(box.high.y), edge(box.high.z)};
+    if (is_inside_out(box)) return std::nullopt;
   }
   return Decomposition(std::move(boxes));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "engine/core/communicator.hpp"
@@ -15,10 +16,10 @@ struct Load {
 };
 
 /// Boxes, one to each rank, whose loads are as equal as cuts between loads make them: Zoltan's
-/// recursive bisection across the longest side. Boxes may be of any width, and empty where there
-/// are fewer loads than ranks. The same on all ranks.
+/// recursive bisection across the longest side. Boxes may be of any width. The same on all ranks.
 /// @param loads of this rank, wherever they are
-/// Collective.
-Decomposition balanced(const Communicator& ranks, const std::vector<Load>& loads);
+/// @return nothing when loads are too few, or too many of them in one place, for each rank to get
+/// some Collective.
+std::optional<Decomposition> balanced(const Communicator& ranks, const std::vector<Load>& loads);
 
 }  // namespace grouser

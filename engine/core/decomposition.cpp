@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <tuple>
 
 #include "base/check.hpp"
 
@@ -86,8 +87,11 @@ int Decomposition::part(std::vector<int> ranks) {
   double best_at = 0.0;
   const auto low = [&](int rank, int axis) { return along(box(rank).low, axis); };
   const auto sort_along = [&](int axis) {
-    std::stable_sort(ranks.begin(), ranks.end(),
-                     [&](int a, int b) { return low(a, axis) < low(b, axis); });
+    // An empty box comes before what begins where it lies, whatever the order was before.
+    std::sort(ranks.begin(), ranks.end(), [&](int a, int b) {
+      return std::tuple(low(a, axis), along(box(a).high, axis), a) <
+             std::tuple(low(b, axis), along(box(b).high, axis), b);
+    });
   };
   const auto evenness = [&](std::size_t below) { return std::min(below, ranks.size() - below); };
   for (int axis = 0; axis < 3; ++axis) {

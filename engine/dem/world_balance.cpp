@@ -39,9 +39,7 @@ std::vector<double> World::costs() const {
 }
 
 void World::cut_if_uneven() {
-  // Fewer grains than ranks cannot be shared out, and cuts through none of them are not the same
-  // everywhere.
-  if (ranks_.size() == 1 || count_ < ranks_.size()) return;
+  if (ranks_.size() == 1) return;
   bool is_uneven = is_loaded_;
   if (!is_loaded_) {
     if (busy_steps_ < kLeastSteps) return;
@@ -55,7 +53,6 @@ void World::cut_if_uneven() {
   if (is_uneven) {
     if (is_loaded_) busy_steps_ = 0;
     cut_by(costs());
-    ++cuts_;
   }
   is_loaded_ = false;
   busy_ = 0.0;
@@ -72,7 +69,10 @@ void World::cut_by(const std::vector<double>& weights) {
     if (i % some == 0) loads.push_back({particles_[i].position, 0.0});
     loads.back().weight += weights[i];
   }
-  boxes_ = balanced(ranks_, loads);
+  const std::optional<Decomposition> boxes = balanced(ranks_, loads);
+  if (!boxes) return;
+  boxes_ = *boxes;
+  ++cuts_;
   neighbours_ = boxes_.neighbours(ranks_.rank(), 2.0 * settings_.largest_radius + settings_.skin);
   must_rebuild_ = true;
   may_be_far_ = true;

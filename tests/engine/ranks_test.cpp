@@ -43,6 +43,14 @@ std::vector<Load> share_of(const std::vector<Particle>& grains, const Communicat
   return loads;
 }
 
+void expect_the_same_on_all(const Decomposition& boxes, const Communicator& ranks) {
+  for (int rank = 0; rank < ranks.size(); ++rank) {
+    const Box& box = boxes.box(rank);
+    for (const double face : {box.low.x, box.low.y, box.low.z, box.high.x, box.high.y, box.high.z})
+      ASSERT_EQ(ranks.max(face), -ranks.max(-face)) << "rank " << rank;
+  }
+}
+
 TEST(Balance, SharesOfRandomWeightsAreEvenAndTheSameOnAllRanks) {
   const Communicator ranks;
   if (ranks.size() == 1) return;  // nothing to share
@@ -53,7 +61,7 @@ TEST(Balance, SharesOfRandomWeightsAreEvenAndTheSameOnAllRanks) {
   for (int i = 0; i < 4000; ++i)
     loads.push_back({{std::pow(unit(random), 3.0), 0.4 * unit(random), 0.2 * unit(random)},
                      0.5 + unit(random)});
-  const Decomposition boxes = balanced(ranks, loads);
+  const Decomposition boxes = balanced(ranks, loads).value();
   Communicator::StepTotals totals;
   totals.sums.resize(static_cast<std::size_t>(ranks.size()));
   for (const Load& load : loads)
@@ -67,10 +75,28 @@ TEST(Balance, SharesOfRandomWeightsAreEvenAndTheSameOnAllRanks) {
   }
   // One per cent is allowed to each of the three halvings of eight ranks.
   EXPECT_LT(largest * ranks.size() / sum, 1.03);
-  for (int rank = 0; rank < ranks.size(); ++rank) {
-    const Box& box = boxes.box(rank);
-    for (const double face : {box.low.x, box.low.y, box.low.z, box.high.x, box.high.y, box.high.z})
-      ASSERT_EQ(ranks.max(face), -ranks.max(-face)) << "rank " << rank;
+  expect_the_same_on_all(boxes, ranks);
+}
+
+TEST(Balance, FewLoadsOfLittleWeightGiveTheSameBoxesOnAllRanks) {
+  const Communicator ranks;
+  if (ranks.size() == 1) return;
+  std::mt19937_64 random(5);  // the same on all ranks
+  std::uniform_int_distribution<int> place(0, 3);
+  std::uniform_int_distribution<int> holder(0, ranks.size() - 1);
+  for (int trial = 0; trial < 400; ++trial) {
+    const int count = trial % (2 * ranks.size());
+    const double weight = trial % 3 == 0 ? 0.0 : trial % 3 == 1 ? 1e-9 : 1.0;
+    std::vector<Load> loads;
+    for (int i = 0; i < count; ++i) {
+      const Load load{{0.1 * place(random), 0.1 * place(random), 0.1 * place(random)}, weight};
+      if (holder(random) == ranks.rank()) loads.push_back(load);
+    }
+    SCOPED_TRACE("trial " + std::to_string(trial));
+    const std::optional<Decomposition> boxes = balanced(ranks, loads);
+    const std::int64_t is_cut = boxes ? 1 : 0;
+    ASSERT_EQ(ranks.max(is_cut), -ranks.max(-is_cut));
+    if (boxes) expect_the_same_on_all(*boxes, ranks);
   }
 }
 
@@ -81,7 +107,7 @@ TEST(Halo, HasEveryGrainThatAnOwnedOneMayTouchAndNoOtherHoweverNarrowTheBoxes) {
     std::vector<Particle> grains = stepped_grains(300, random);
     const Decomposition boxes = ranks.size() == 1 || seed == 1
                                     ? Decomposition::even({0, 0, 0}, {0.1, 0.1, 0.1}, ranks.size())
-                                    : balanced(ranks, share_of(grains, ranks, random));
+                                    : balanced(ranks, share_of(grains, ranks, random)).value();
     std::vector<Particle> here;
     for (const Particle& p : grains)
       if (boxes.owner_of(p.position) == ranks.rank()) here.push_back(p);
