@@ -34,6 +34,8 @@ struct Face {
   FaceKind kind = FaceKind::kPeriodic;
   Vec3 velocity_lu{};       ///< of a wall [cells per step], or of the fluid at kVelocity
   double density_lu = 1.0;  ///< at kPressure; the pressure is a third of it
+  /// At kVelocity in place of velocity_lu where the velocity changes over the face; of a centre.
+  std::function<Vec3(const Vec3&)> profile{};
 };
 
 /// A solid body in the fluid.
@@ -92,7 +94,7 @@ class Flow : public Stateful {
   /// Sets every cell of fluid to the equilibrium of what `at` says of its centre. Collective.
   virtual void set_equilibrium(const std::function<FlowNode(const Vec3&)>& at) = 0;
   virtual void set_force(const Vec3& force_lu) = 0;
-  /// Collective, with the same value on every rank.
+  /// Replaces the profile, where there was one. Collective, with the same value on every rank.
   virtual void set_face_velocity(int axis, int end, const Vec3& velocity_lu) = 0;
 
   /// State of a cell that this rank owns. Local.

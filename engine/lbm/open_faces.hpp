@@ -25,27 +25,31 @@ class OpenFaces {
         if (!is_open(face.kind)) continue;
         const std::int64_t layer =
             end == 0 ? 0 : blocks.cells()[static_cast<std::size_t>(axis)] - 1;
-        faces_.push_back({face, axis, end, {}});
+        faces_.push_back({face.kind, face.density_lu, axis, end, {}});
         for (std::int64_t z = 0; z < box.nz; ++z)
           for (std::int64_t y = 0; y < box.ny; ++y)
             for (std::int64_t x = 0; x < box.nx; ++x) {
               const std::int64_t at[3] = {x, y, z};
               if (at[axis] + blocks.low(axis) != layer || !solids.is_fluid(x, y, z)) continue;
-              if (!on_earlier(settings, blocks, at, axis)) faces_.back().cells.push_back({x, y, z});
+              if (on_earlier(settings, blocks, at, axis)) continue;
+              const Vec3 velocity =
+                  face.profile ? face.profile(centre_of(blocks, x, y, z)) : face.velocity_lu;
+              faces_.back().cells.push_back({x, y, z, velocity});
             }
       }
   }
 
   void set_velocity(int axis, int end, const Vec3& velocity) {
     for (OpenFace& face : faces_)
-      if (face.axis == axis && face.end == end) face.condition.velocity_lu = velocity;
+      for (Cell& cell : face.cells)
+        if (face.axis == axis && face.end == end) cell.velocity = velocity;
   }
 
   /// Fills in what arrives through the faces.
   void apply(Streaming<Set, Real>& streaming, const Vec3& force) const {
     for (const OpenFace& face : faces_)
       for (const Cell& cell : face.cells) {
-        if (face.condition.kind == FaceKind::kOutflow)
+        if (face.kind == FaceKind::kOutflow)
           copy_inner(streaming, face, cell);
         else
           regularise(streaming, face, cell, force);
@@ -55,9 +59,11 @@ class OpenFaces {
  private:
   struct Cell {
     std::int64_t x, y, z;
+    Vec3 velocity;
   };
   struct OpenFace {
-    Face condition;
+    FaceKind kind;
+    double density;
     int axis;
     int end;
     std::vector<Cell> cells;
@@ -121,9 +127,9 @@ class OpenFaces {
       return sign * (face.axis == 0 ? v.x : face.axis == 1 ? v.y : v.z);
     };
     known -= 0.5 * normal(force);
-    Vec3 u = face.condition.velocity_lu;
-    double density = face.condition.density_lu;
-    if (face.condition.kind == FaceKind::kVelocity) {
+    Vec3 u = cell.velocity;
+    double density = face.density;
+    if (face.kind == FaceKind::kVelocity) {
       density = known / (1.0 - normal(u));
     } else {
       const double speed = sign * (1.0 - known / density);

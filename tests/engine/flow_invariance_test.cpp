@@ -49,6 +49,8 @@ FlowSettings crowded(const std::string& lattice, Precision precision, int kind) 
       if (face.kind == FaceKind::kVelocity) face.velocity_lu = {0.02, 0.01, 0.0};
       if (face.kind == FaceKind::kWall) face.velocity_lu = {0.03, 0.0, 0.01};
     }
+  if (kind == 0)
+    s.faces[0][0].profile = [](const Vec3& p) { return Vec3{0.02 + 0.001 * p.y, 0.01, 0.0}; };
   const Vec3 centre{9.3, 6.2, flat ? 0.0 : 5.4};
   s.obstacles.push_back({[centre](const Vec3& p) { return norm(p - centre) - 2.7; }});
   s.obstacles[0].interpolated = kind % 2 == 0;
