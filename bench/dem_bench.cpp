@@ -42,11 +42,13 @@ Case read_bench_case(const fs::path& directory) {
 }
 
 // The world that the engine itself would make of the case, but for the skin.
-World bench_world(const Communicator& ranks, const Case& input, int threads = 1) {
+World bench_world(const Communicator& ranks, const Case& input, int threads = 1,
+                  double uneven = WorldSettings{}.uneven) {
   const World users = make_world(ranks, input);
   WorldSettings settings = users.settings();
   settings.skin = kSkin;
   settings.threads = threads;
+  settings.uneven = uneven;
   World world(ranks, settings);
   for (std::size_t b = 0; b < users.bodies(); ++b) {
     const Body& body = users.body(b);
@@ -171,6 +173,7 @@ struct TimeOptions {
   std::int64_t warm_up = 0;
   bool rolls = false;
   int threads = 1;
+  double uneven = WorldSettings{}.uneven;
 };
 
 // Every code starts from the grains alone, without contact histories, which the peers cannot read;
@@ -180,7 +183,7 @@ void time_steps(const Communicator& ranks, const TimeOptions& options) {
   Case input = read_bench_case(options.directory);
   input.contact.rolling = options.rolls ? "elastic_plastic" : "none";
   input.numerics.time_step = kTimeStep;
-  World world = bench_world(ranks, input, options.threads);
+  World world = bench_world(ranks, input, options.threads, options.uneven);
   {
     const auto grains = read_bed(options.directory / "bed.txt", input.grains.density);
     add_share(world, grains);
@@ -212,6 +215,7 @@ void time_steps(const Communicator& ranks, const TimeOptions& options) {
   out["steps"] = options.steps;
   out["ranks"] = ranks.size();
   out["threads"] = options.threads;
+  out["cuts"] = world.cuts();
   out["seconds"] = seconds;
   out["particle_steps_per_s"] = count * static_cast<double>(options.steps) / seconds;
   out["kinetic_energy_J"] = energy;
@@ -251,6 +255,8 @@ int run(int argc, char** argv, const Communicator& ranks) {
   timing->add_option("--steps", options.steps, "timed")->required();
   timing->add_option("--warm-up", options.warm_up, "steps before");
   timing->add_flag("--rolling", options.rolls, "with elastic-plastic rolling resistance");
+  timing->add_option("--uneven", options.uneven,
+                     "slowest over mean rank from which space is cut anew; inf: never");
   timing->add_option("--threads", options.threads, "of each rank")->check(CLI::Range(1, 1024));
   timing->add_option("--state", options.state, "file for the grains at the end");
   auto* measuring = app.add_subcommand("measure", "energy, contacts and overlap of a state");

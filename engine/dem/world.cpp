@@ -132,11 +132,16 @@ World::StepResult World::step(double request) {
   overlap = std::max(overlap, pairs_.sweep(particles_, settings_.time_step, move_on, fetch_ghosts));
   Motion motion;
   for (const Motion& one : motions) motion.add(one);
-  totals.sums.emplace_back().add(std::isfinite(motion.sum) ? motion.sum : 0.0);
-  totals.maxima = {std::sqrt(motion.fastest2), std::sqrt(motion.slow2), overlap,
-                   motion.is_lost ? 1.0 : 0.0, request};
   busy_ += thread_seconds() - begun - waited;
   ++busy_steps_;
+  totals.sums.emplace_back().add(busy_);
+  totals.sums.emplace_back().add(std::isfinite(motion.sum) ? motion.sum : 0.0);
+  totals.maxima = {std::sqrt(motion.fastest2),
+                   std::sqrt(motion.slow2),
+                   overlap,
+                   motion.is_lost ? 1.0 : 0.0,
+                   request,
+                   busy_};
   ranks_.combine(totals);
   for (std::size_t b = 0; b < bodies_.size(); ++b)
     loads_[b] = {totals.sums[5 * b], totals.sums[5 * b + 1], totals.sums[5 * b + 2],
@@ -158,7 +163,8 @@ World::StepResult World::step(double request) {
                      settings_.time_step);
   for (BodyContacts& contacts : body_contacts_) contacts.note_travel(way);
   if (moved_ > 0.5 * settings_.skin) moved_ = ranks_.max(displacement());
-  must_rebuild_ = moved_ > 0.5 * settings_.skin;
+  must_rebuild_ = moved_ > 0.5 * settings_.skin ||
+                  looks_uneven(totals.maxima[5], totals.sums[5 * bodies_.size()].value());
   return result;
 }
 

@@ -28,7 +28,8 @@ struct WorldSettings {
   double skin = 0.0;            ///< margin of the neighbour list [m]; costs time, not accuracy
   /// Where grains end above at first [m]: for the first cuts between ranks; 0 = high.z
   double top = 0.0;
-  /// Space is cut anew when the slowest rank takes this many times the mean; infinite = never
+  /// Space is cut anew when the slowest rank takes this many times the mean; infinite = never by
+  /// itself
   double uneven = 1.05;
   int threads = 1;  ///< of this rank; change no bit
   std::string law = "hertz_mindlin";
@@ -173,6 +174,8 @@ class World : public Stateful {
 
   void rebuild();
   void cut_if_uneven();
+  double unevenness_of_counts() const;
+  bool looks_uneven(double most, double sum);
   std::vector<double> costs() const;
   std::vector<Bytes> exchange_leaving(std::vector<bool>& leaves) const;
   std::vector<Bytes> deliver(std::map<int, Bytes> out) const;
@@ -206,7 +209,9 @@ class World : public Stateful {
   std::int64_t count_ = 0;       // of grains on all ranks
   std::vector<Place> built_at_;  // where grains were when the list was made
   bool may_be_far_ = true;       // from their owners, which need not be neighbours
-  bool is_loaded_ = false;       // from a state that was spread by id
+  bool is_new_ = true;           // nobody has looked yet how many grains each rank gets
+  bool is_uneven_ = false;       // by the time of the steps since the last look
+  int patience_ = 0;             // steps of a list's life after which it is not waited for
   double busy_ = 0.0;            // processor time in contacts and motion since the last look [s]
   int busy_steps_ = 0;
   int cuts_ = 0;

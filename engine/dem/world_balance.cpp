@@ -12,6 +12,12 @@ namespace {
 // Steps whose time is added up before ranks are compared: single ones are too short to tell.
 constexpr int kLeastSteps = 32;
 
+// Lists of a bed at rest live long: after so many steps, twice as many the next time, grains are
+// shared out without waiting for new lists, when that is worth their cost.
+constexpr int kPatience = 128;
+constexpr int kMostPatience = 1 << 20;
+constexpr double kWorthNewLists = 1.2;
+
 // What ranks tell of their grains when space is cut: enough for shares to be even to 1 %.
 constexpr std::size_t kLoads = 8192;
 
@@ -38,25 +44,51 @@ std::vector<double> World::costs() const {
   return costs;
 }
 
+// Largest over mean number of grains that ranks would have if all were with their owners.
+double World::unevenness_of_counts() const {
+  std::vector<std::int64_t> counts(static_cast<std::size_t>(ranks_.size()), 0);
+  for (std::size_t i = 0; i < owned_; ++i)
+    ++counts[static_cast<std::size_t>(boxes_.owner_of(particles_[i].position))];
+  Communicator::StepTotals totals;
+  totals.sums.resize(counts.size());
+  for (std::size_t r = 0; r < counts.size(); ++r)
+    totals.sums[r].add(static_cast<double>(counts[r]));
+  ranks_.combine(totals);
+  double most = 0.0;
+  for (const ExactSum& sum : totals.sums) most = std::max(most, sum.value());
+  return most * ranks_.size() / static_cast<double>(count_);
+}
+
 void World::cut_if_uneven() {
-  if (ranks_.size() == 1) return;
-  bool is_uneven = is_loaded_;
-  if (!is_loaded_) {
-    if (busy_steps_ < kLeastSteps) return;
-    Communicator::StepTotals totals;
-    totals.sums.resize(1);
-    totals.sums[0].add(busy_);
-    totals.maxima = {busy_};
-    ranks_.combine(totals);
-    is_uneven = totals.maxima[0] * ranks_.size() > settings_.uneven * totals.sums[0].value();
+  if (ranks_.size() == 1 || count_ == 0) return;
+  if (is_new_) {
+    busy_steps_ = 0;
+    is_uneven_ = unevenness_of_counts() > settings_.uneven;
+    is_new_ = false;
+  } else if (busy_steps_ < kLeastSteps) {
+    return;
   }
-  if (is_uneven) {
-    if (is_loaded_) busy_steps_ = 0;
-    cut_by(costs());
-  }
-  is_loaded_ = false;
+  if (is_uneven_) cut_by(costs());
+  is_uneven_ = false;
   busy_ = 0.0;
   busy_steps_ = 0;
+}
+
+// Takes note of the ranks' times in the last steps, and tells whether not to wait for new lists.
+bool World::looks_uneven(double most, double sum) {
+  if (ranks_.size() == 1 || busy_steps_ < kLeastSteps) return false;
+  const double excess = most * ranks_.size() / sum;
+  is_uneven_ = excess > settings_.uneven;
+  patience_ = std::max(patience_, kPatience);
+  if (busy_steps_ < patience_) return false;
+  if (is_uneven_ && excess > kWorthNewLists) {
+    patience_ = std::min(2 * patience_, kMostPatience);
+    return true;
+  }
+  is_uneven_ = false;
+  busy_ = 0.0;
+  busy_steps_ = 0;
+  return false;
 }
 
 void World::cut_by(const std::vector<double>& weights) {

@@ -17,6 +17,7 @@ constexpr std::size_t kFewGrains = 32768;
 }  // namespace
 
 void World::rebuild() {
+  count_ = particle_count();
   cut_if_uneven();
   std::vector<bool> leaves(owned_, false);
   std::vector<Bytes> messages;
@@ -35,7 +36,6 @@ void World::rebuild() {
   messages = {};
   put_in_order(std::move(number));
 
-  count_ = particle_count();
   built_at_.clear();
   built_at_.reserve(owned_);
   for (std::size_t i = 0; i < owned_; ++i) {

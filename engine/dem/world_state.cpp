@@ -112,7 +112,7 @@ void World::begin_load() {
   load_failure_.clear();
   must_rebuild_ = true;
   may_be_far_ = true;
-  is_loaded_ = true;
+  is_new_ = true;
 }
 
 void World::load_rows(const StateTable& rows) {

@@ -100,6 +100,24 @@ TEST(Balance, FewLoadsOfLittleWeightGiveTheSameBoxesOnAllRanks) {
   }
 }
 
+TEST(Balance, ABedThatLiesInACornerIsSharedOutAtTheFirstStep) {
+  const Communicator ranks;
+  WorldSettings settings = small_settings();
+  settings.gravity = 0.0;
+  World world(ranks, settings);
+  constexpr int kCount = 512;
+  // At rest and apart: lists are never made anew, so nothing else would share them out.
+  for (int i = 0; i < kCount; ++i)
+    if (i % ranks.size() == ranks.rank())
+      world.add_particle(sphere(
+          i, 2e-3, {0.005 * (i % 8 + 0.5), 0.005 * (i / 8 % 8 + 0.5), 0.005 * (i / 64 + 0.5)}));
+  ASSERT_EQ(world.step().fault, Fault::kNone);
+  // Cuts go between layers of 64 grains in rows of 8.
+  EXPECT_LE(ranks.max(static_cast<std::int64_t>(world.owned())) * ranks.size(),
+            kCount + 64 * ranks.size());
+  EXPECT_EQ(world.particle_count(), kCount);
+}
+
 TEST(Halo, HasEveryGrainThatAnOwnedOneMayTouchAndNoOtherHoweverNarrowTheBoxes) {
   const Communicator ranks;
   for (const unsigned seed : {1u, 2u, 3u, 4u, 5u, 6u}) {
