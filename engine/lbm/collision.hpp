@@ -159,8 +159,9 @@ struct TwoRates {
 
   /// The same with something added to the even part of every pair: extra(k) is it for pair k, and
   /// extra(kPairs) that of the population at rest.
-  template <class Set, bool kForced, class T, class Extra>
-  [[gnu::always_inline]] void relax(T* f, const NodeMoments<Set, T>& m, const Vec3T<Real>& force,
+  /// @param force one for all nodes or, as a vector of T, one for each
+  template <class Set, bool kForced, class T, class Force, class Extra>
+  [[gnu::always_inline]] void relax(T* f, const NodeMoments<Set, T>& m, const Force& force,
                                     const Extra& extra) const {
     constexpr std::size_t kPairs = Set::kVelocities / 2;
     constexpr const auto& weights = Set::kSet.weights;
@@ -186,7 +187,7 @@ struct TwoRates {
       T stretch = (Real(4.5) * weight * even) * momentum;
       T straight = keep_odd * m.odd[k] + (Real(3) * weight * odd) * momentum;
       if constexpr (kForced) {
-        const Real push = weight * detail::along<Set, k>(force);
+        const auto push = weight * detail::along<Set, k>(force);
         stretch = stretch + Real(9) * forced_even * push;
         straight = straight + Real(3) * forced_odd * push;
       }

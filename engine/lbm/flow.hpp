@@ -9,6 +9,7 @@
 
 #include "base/errors.hpp"
 #include "engine/core/state_io.hpp"
+#include "engine/lbm/averaged.hpp"
 #include "engine/lbm/cell_blocks.hpp"
 #include "engine/lbm/collision.hpp"
 
@@ -108,6 +109,12 @@ class Flow : public Stateful {
   /// have none. Momentum exchange over the links cut by the surface, in the form that does not
   /// depend on the observer's speed (Wen, Zhang, Tu, Wang, Fang 2014). Collective.
   virtual std::vector<FluidLoad> loads() const = 0;
+
+  /// Makes this the volume-averaged flow between grains and gives what it shares with them, which
+  /// the caller fills before each step. Void fractions are no part of the flow's state; node() is
+  /// of the momentum n u. Moving walls and open faces are for cells without grains.
+  /// @throws ConfigError but for D3Q19 with bgk or trt in double precision. Local.
+  virtual AveragedFields& average() = 0;
 
   virtual const CellBlocks& blocks() const = 0;
   virtual std::int64_t steps() const = 0;

@@ -9,6 +9,7 @@
 #include "engine/lbm/flow.hpp"
 #include "engine/lbm/open_faces.hpp"
 #include "engine/lbm/population_halo.hpp"
+#include "engine/lbm/sweep_averaged.hpp"
 #include "engine/lbm/sweep_rows.hpp"
 #include "engine/lbm/wall_links_impl.hpp"
 
@@ -142,11 +143,22 @@ class FlowOf final : public Flow {
     return loads;
   }
 
+  AveragedFields& average() override {
+    if constexpr (kMayBeAveraged) {
+      if (!averaged_ && std::holds_alternative<TwoRates<double>>(collision_))
+        averaged_ = std::make_unique<AveragedFields>(box_);
+      if (averaged_) return *averaged_;
+    }
+    throw ConfigError({Problem{"", 0, 0, "lattice", "cannot hold a volume-averaged flow",
+                               "take D3Q19 with trt in double precision"}});
+  }
+
   const CellBlocks& blocks() const override { return blocks_; }
   std::int64_t steps() const override { return steps_; }
   std::size_t bytes() const override {
     return streaming_.populations().bytes() + solids_.bytes() + walls_.bytes() +
-           rows_.capacity() * sizeof(Row) + spans_.capacity() * sizeof(Span);
+           rows_.capacity() * sizeof(Row) + spans_.capacity() * sizeof(Span) +
+           (averaged_ ? averaged_->bytes() : 0);
   }
 
   void save_state(State& state, const StatePiece& piece) const override;
@@ -156,6 +168,7 @@ class FlowOf final : public Flow {
 
  private:
   using Halo = PopulationHalo<Set, Real>;
+  static constexpr bool kMayBeAveraged = std::is_same_v<Set, D3Q19> && std::is_same_v<Real, double>;
 
   static std::array<bool, 3> periodic_axes(const FlowSettings& settings) {
     std::array<bool, 3> periodic{};
@@ -213,6 +226,13 @@ class FlowOf final : public Flow {
 
   void sweep_part(std::size_t from, std::size_t to) {
     const SweepRange range{rows_.data() + from, to - from, spans_.data(), streaming_.period_x()};
+    if constexpr (kMayBeAveraged) {
+      if (averaged_) {
+        sweep_averaged(streaming_, std::get<TwoRates<double>>(collision_), force_, range,
+                       *averaged_);
+        return;
+      }
+    }
     sweep_rows<Set, Real>(streaming_, collision_, force_, range);
   }
 
@@ -238,6 +258,7 @@ class FlowOf final : public Flow {
   SolidMap solids_;
   WallLinks<Set, Real> walls_;
   OpenFaces<Set, Real> open_;
+  std::unique_ptr<AveragedFields> averaged_;
   std::vector<Row> rows_;
   std::size_t outer_rows_ = 0;  // of rows_, those at faces of the block
   std::vector<Span> spans_;

@@ -76,10 +76,12 @@ double cavity_error(double reynolds, std::int64_t cells, const char* collision) 
   std::vector<double> across;
   const std::int64_t half = cells / 2;  // an even number of cells: the middle is between two
   for (std::int64_t k = 0; k < cells; ++k) {
-    along.push_back((flow->node(half, k, 0).velocity_lu.x +
-                     flow->node(half - 1, k, 0).velocity_lu.x) / (2.0 * lid));
-    across.push_back((flow->node(k, half, 0).velocity_lu.y +
-                      flow->node(k, half - 1, 0).velocity_lu.y) / (2.0 * lid));
+    along.push_back(
+        (flow->node(half, k, 0).velocity_lu.x + flow->node(half - 1, k, 0).velocity_lu.x) /
+        (2.0 * lid));
+    across.push_back(
+        (flow->node(k, half, 0).velocity_lu.y + flow->node(k, half - 1, 0).velocity_lu.y) /
+        (2.0 * lid));
   }
   double square = 0.0;
   int points = 0;
@@ -160,8 +162,7 @@ CylinderForces flow_around(double reynolds, std::int64_t diameter, double mean_s
     last_force = now;
     found.drag = std::max(found.drag, force.x);
     found.lift = std::max(found.lift, force.y);
-    if (i > 0 && before < 0.0 && force.y >= 0.0)
-      rises.push_back(i - force.y / (force.y - before));
+    if (i > 0 && before < 0.0 && force.y >= 0.0) rises.push_back(i - force.y / (force.y - before));
     before = force.y;
   }
   if (rises.size() > 1)
@@ -170,8 +171,8 @@ CylinderForces flow_around(double reynolds, std::int64_t diameter, double mean_s
 }
 
 TEST(Cylinder, HasThePublishedDragInAChannelAtReynolds20) {
-  // Source: Schaefer, Turek 1996, case 2D-1; Nabh 1998: drag 5.5795, lift 0.0106. What is over is of
-  // the second order in cell and Mach number.
+  // Source: Schaefer, Turek 1996, case 2D-1; Nabh 1998: drag 5.5795, lift 0.0106. What is over is
+  // of the second order in cell and Mach number.
   const CylinderForces found = flow_around(20.0, full_size() ? 40 : 10, 0.02, 40.0, 0.5);
   EXPECT_NEAR(found.drag, 5.5795, (full_size() ? 0.005 : 0.015) * 5.5795);
   EXPECT_NEAR(found.lift, 0.0106, full_size() ? 0.001 : 0.003);
@@ -228,8 +229,8 @@ Array cubic_array(double solid, double drag, std::int64_t cells, double viscosit
 }
 
 // Source: Zick, Homsy 1982, J. Fluid Mech. 115, 13, simple cubic array.
-constexpr std::pair<double, double> kCubicArrays[] = {{0.027, 2.008}, {0.125, 4.292},
-                                                      {0.216, 7.442}};
+constexpr std::pair<double, double> kCubicArrays[] = {
+    {0.027, 2.008}, {0.125, 4.292}, {0.216, 7.442}};
 
 TEST(CubicArray, HasThePublishedDragAtThreeSolidFractions) {
   // Half-way cells make a sphere whose radius is known to some tenth of a cell; at the full size of
