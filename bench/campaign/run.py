@@ -35,6 +35,7 @@ def main():
     parser.add_argument("--chunks", type=int, default=20)
     parser.add_argument("--active", type=int, default=1000)
     args = parser.parse_args()
+    args.bin, args.fake_engine = args.bin.resolve(), args.fake_engine.resolve()
     case = reliability.CASE[:reliability.CASE.index("sweep:")]
     result = {"runs": args.runs, "chunks": args.runs * args.chunks}
     with tempfile.TemporaryDirectory(prefix="grouser-campaign-") as folder:

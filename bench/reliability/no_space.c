@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause
  * For LD_PRELOAD: the NO_SPACE_AT-th call that needs room below NO_SPACE_BELOW fails with ENOSPC,
- * and so does every later one. NO_SPACE_COUNT names a file in which the number of calls is left. */
+ * and so does every later one. NO_SPACE_COUNT names a file in which the number of calls is left.
+ * Only in the program that NO_SPACE_IN names, not in what it starts. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -16,12 +17,18 @@
 
 static long calls;
 
+static int is_meant(void) {
+  const char* name = getenv("NO_SPACE_IN");
+  return name != NULL && strcmp(program_invocation_short_name, name) == 0;
+}
+
 static int below(const char* path) {
   const char* folder = getenv("NO_SPACE_BELOW");
   return folder != NULL && strncmp(path, folder, strlen(folder)) == 0;
 }
 
 static int fails(void) {
+  if (!is_meant()) return 0;
   const char* at = getenv("NO_SPACE_AT");
   ++calls;
   return at != NULL && calls >= atol(at);
@@ -103,7 +110,7 @@ int rename(const char* from, const char* to) {
 
 static void __attribute__((destructor)) leave_count(void) {
   const char* name = getenv("NO_SPACE_COUNT");
-  if (name == NULL) return;
+  if (name == NULL || !is_meant()) return;
   FILE* out = fopen(name, "w");
   if (out == NULL) return;
   fprintf(out, "%ld\n", calls);

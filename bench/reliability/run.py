@@ -160,7 +160,7 @@ def engine_command(args, folder, bed=None):
 def prepare_case(folder, wheel):
     (folder / "checkpoints").mkdir(parents=True)
     text = (HERE / "case.yaml").read_text()
-    (folder / "case.yaml").write_text(text if wheel else text[:text.index("wheel:")])
+    (folder / "case.yaml").write_text(text if wheel else text[:text.index("\nwheel:") + 1])
     (folder / "fence").write_text("reliability")
 
 
@@ -236,7 +236,8 @@ def no_space(args, work, bed, straight, calm, result):
     def start_engine(**more):
         shutil.rmtree(folder, ignore_errors=True)
         prepare_case(folder, wheel=True)
-        return run_engine(engine_command(args, folder, bed), NO_SPACE_BELOW=str(folder), **more)
+        return run_engine(engine_command(args, folder, bed), NO_SPACE_BELOW=str(folder),
+                          NO_SPACE_IN="grouser-engine", **more)
 
     calls = calls_of(start_engine)
     tried = 0
@@ -260,8 +261,8 @@ def no_space(args, work, bed, straight, calm, result):
         shutil.rmtree(campaign_folder, ignore_errors=True)
         campaign = Campaign(args, campaign_folder, SLURM)
         campaign.root.mkdir()
-        # Of its children only the manager itself is to fail.
-        code = campaign.submit(NO_SPACE_BELOW=str(campaign.root), **more).returncode
+        code = campaign.submit(NO_SPACE_BELOW=str(campaign.root), NO_SPACE_IN="grouser",
+                               **more).returncode
         return campaign, code
 
     calls = calls_of(start_manager)
@@ -325,6 +326,7 @@ def main():
     parser.add_argument("--no-space", type=int, default=100, help="calls tried; 0 = all")
     parser.add_argument("--two-ticks", type=int, default=100)
     args = parser.parse_args()
+    args.bin, args.fake_engine = args.bin.resolve(), args.fake_engine.resolve()
     result = {"lost": 0, "double_runs": 0, "bit_mismatches": 0, "campaigns": 0}
     begun = time.time()
     with tempfile.TemporaryDirectory(prefix="grouser-reliability-") as folder:

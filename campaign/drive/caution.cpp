@@ -88,12 +88,12 @@ RunRow set_aside_newest(const std::filesystem::path& root, const RunRow& run) {
   return at;
 }
 
-std::string limit_reached(const Settings& settings, std::size_t attempts, double used,
+std::string limit_reached(const Settings& settings, std::size_t jobs, double used,
                           std::size_t active) {
   const Limits& limits = settings.limits;
   const std::string go_on = "; raise it, grouser submit --update, then grouser resume";
-  if (limits.max_chunks > 0 && attempts >= static_cast<std::size_t>(limits.max_chunks))
-    return "limits.max_chunks: the run has had " + std::to_string(attempts) + " jobs" + go_on;
+  if (limits.max_chunks > 0 && jobs >= static_cast<std::size_t>(limits.max_chunks))
+    return "limits.max_chunks: the run has had " + std::to_string(jobs) + " jobs" + go_on;
   if (limits.node_hours <= 0.0) return "";
   const Resources& resources = settings.resources;
   const auto nodes = static_cast<double>(std::max<std::int64_t>(resources.nodes, 1));

@@ -33,10 +33,10 @@ bool is_checkpoint_suspect(const RunRow& run, const std::vector<AttemptRow>& att
 RunRow set_aside_newest(const std::filesystem::path& root, const RunRow& run);
 
 /// Why the limits forbid another job of the run; "" when they do not. Pure.
-/// @param attempts  of the run so far
+/// @param jobs      of the run so far
 /// @param used      seconds that all ended jobs of the campaign took
 /// @param active    jobs at work, each taken at its whole walltime
-std::string limit_reached(const Settings& settings, std::size_t attempts, double used,
+std::string limit_reached(const Settings& settings, std::size_t jobs, double used,
                           std::size_t active);
 
 /// Why the engine's program may not go on with the run's state; "" when it may. Pure.

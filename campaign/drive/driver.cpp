@@ -263,7 +263,11 @@ std::optional<Submission> Driver::prepare(const RunRow& planned, const RunRow* b
   const auto attempts = store_.attempts(planned.id);
   const Settings& settings = shared_.settings;
   const double used = settings.limits.node_hours > 0.0 ? store_.occupied_seconds() : 0.0;
-  std::string why_not = limit_reached(settings, attempts.size(), used, active);
+  // One that the scheduler never took was no job.
+  const auto jobs = static_cast<std::size_t>(
+      std::count_if(attempts.begin(), attempts.end(),
+                    [](const AttemptRow& attempt) { return attempt.submitted_at > 0.0; }));
+  std::string why_not = limit_reached(settings, jobs, used, active);
   if (why_not.empty()) why_not = engine_mismatch(planned, shared_.engine_hash);
   if (why_not.empty()) return Submission{without_suspect(planned, attempts), *chunk, bed};
   hold(planned, *chunk, why_not);

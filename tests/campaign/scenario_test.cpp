@@ -493,6 +493,16 @@ TEST_F(Limited, S24AChainThatRunsAwayStopsAtItsNumberOfJobs) {
       << run("bed").reason;
 }
 
+TEST_F(Limited, S24ABusySchedulerUsesUpNoJobs) {
+  limit("max_chunks: 3");
+  for (int i = 0; i < 5; ++i) {
+    scheduler_.next_answer = {SubmitAnswer::Kind::kBusy, "", "AssocMaxSubmitJobLimit"};
+    tick(100.0);
+  }
+  tick(100.0);
+  EXPECT_EQ(run("bed").state, State::kQueued);
+}
+
 TEST_F(Limited, S24TheNodeHoursAreNotExceededEvenIfEveryJobTakesItsWholeWalltime) {
   limit("node_hours: 2.5");
   settle_bed();

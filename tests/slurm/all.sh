@@ -11,8 +11,8 @@ failed=0
 with() { # KIND SCENARIO...
   local kind=$1 scenario
   shift
-  GROUSER_SLURM=$kind "$slurm" up >/dev/null
   for scenario; do
+    GROUSER_SLURM=$kind "$slurm" up >/dev/null  # also after one that failed half-way
     "$repository/tests/slurm/slurm_campaign.sh" "$build/bin/grouser" \
       "$build/tests/fakes/fake_engine" "$scenario" || failed=1
   done

@@ -191,14 +191,14 @@ crash() { # a node dies with all that is on it
 
 lost() { # a node is lost to the controller, and its engine computes on: two writers
   campaign "$(settings)"
-  pace=20000
+  pace=100000  # not done before the manager has noticed
   submit
   until_true 60 'is_running bed && has_progress bed'
   local node token
   node=$(runs_on "$(job_of bed)")
   token=$(ask "SELECT token AS x FROM v_attempts ORDER BY attempt_id LIMIT 1")
   "$slurm" lost "$node"
-  until_true 60 '[ "$(ask "SELECT count(*) AS x FROM v_attempts")" -ge 2 ]'
+  until_true 60 '[ "$(ask "SELECT count(*) AS x FROM v_attempts WHERE run LIKE '"'bed%'"'")" -ge 2 ]'
   pace=2000
   finish 120
   # The lost one found that the run was another's, and wrote nothing more.
@@ -221,7 +221,7 @@ stopped_controller() { # sbatch times out although the job is taken
 
 controller_down() { # nothing is assumed while nobody answers
   campaign "$(settings)"
-  pace=20000
+  pace=300000  # longer than the controller is down
   submit
   until_true 60 'is_running bed'
   kill "$(cat "$base/slurmctld.pid")"
@@ -231,7 +231,7 @@ controller_down() { # nothing is assumed while nobody answers
   [ "$(ask "SELECT count(*) AS x FROM v_attempts")" = "$attempts" ] || fail "assumed an end"
   slurmctld
   pace=2000
-  finish 120
+  finish 150
 }
 
 limit() { # the site lets a user have one job at a time
