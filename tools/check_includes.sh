@@ -23,7 +23,8 @@ campaign/store   base
 campaign/drive   base schedulers campaign/plan campaign/store
 campaign/report  base campaign/store
 campaign/cli     base schedulers campaign/plan campaign/store campaign/drive campaign/report
-campaign         base schedulers campaign/plan campaign/store campaign/drive campaign/report campaign/cli diagnosis/cli
+campaign/serve   base schedulers campaign/plan campaign/store campaign/drive campaign/report campaign/cli
+campaign         base schedulers campaign/plan campaign/store campaign/drive campaign/report campaign/cli campaign/serve diagnosis/cli
 diagnosis/recordings base campaign/report
 diagnosis/models     base diagnosis/recordings
 diagnosis/hypotheses base diagnosis/recordings diagnosis/models
@@ -42,6 +43,7 @@ fences='
 ^omp[.]h$                     ^engine/core/
 ^(sqlite3[.]h$|SQLiteCpp/)    ^campaign/store/
 ^yaml-cpp/                    ^base/
+^httplib[.]h$                 ^(campaign/serve/|tests/end_to_end/serve_campaign_test[.]cpp$)
 ^(udunits2|xxhash)[.]h$       ^base/
 '
 

@@ -12,10 +12,13 @@ import subprocess
 import sys
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 SOURCE = HERE.parents[1]
+KILLS_EACH = 25
+ENGINE_KILLS_EACH = 40
 CASE = """
 case:
   box: {length: 40 cm, width: 12 cm, depth: 10 cm}
@@ -118,38 +121,53 @@ def calm_hashes(args, work):
     return campaign.hashes()
 
 
+def kill_managers(args, work, calm, seed, lives):
+    """One campaign whose managers die so often. @return what to add to the result"""
+    rng = random.Random(seed)
+    campaign = Campaign(args, work / f"manager-{seed}", SLURM)
+    kills = 0
+    for _ in range(lives * 8):
+        if kills == lives:
+            break
+        mode = rng.choice(["", "", "timeout", "lost", "busy"])
+        (campaign.batch / "sbatch.modes").write_text(mode + "\n" if mode else "")
+        (campaign.batch / "squeue.modes").write_text(rng.choice(["", "", "fail\n"]))
+        begin = campaign.tick if (campaign.root / "grouser.db").exists() else campaign.submit
+        died = begin(GROUSER_FAULT=str(rng.randrange(12))).returncode == -signal.SIGKILL
+        kills += died
+    for name in ("sbatch", "squeue"):
+        (campaign.batch / f"{name}.modes").unlink(missing_ok=True)
+    is_done = campaign.finish()
+    found = {"manager_kills": kills, "campaigns": 1,
+             "lost": (not is_done) + campaign.lost_jobs(),
+             "double_runs": campaign.double_runs(),
+             "bit_mismatches": int(is_done and campaign.hashes() != calm)}
+    if is_done:
+        shutil.rmtree(campaign.folder)
+    else:
+        print(f"seed {seed}: not done in {campaign.folder}", file=sys.stderr)
+    return found
+
+
+def add_up(result, found):
+    for key, value in found.items():
+        result[key] = result.get(key, 0) + value
+
+
 def manager_kills(args, work, calm, result):
     """Managers die at every step of their work while sbatch accepts, times out or loses jobs."""
-    kills = 0
+    result["manager_kills"] = 0
     seed = args.seed
-    while kills < args.manager_kills:
-        rng = random.Random(seed)
-        campaign = Campaign(args, work / f"manager-{seed}", SLURM)
-        lives = min(25, args.manager_kills - kills)
-        for _ in range(lives * 8):
-            if lives == 0:
-                break
-            mode = rng.choice(["", "", "timeout", "lost", "busy"])
-            (campaign.batch / "sbatch.modes").write_text(mode + "\n" if mode else "")
-            (campaign.batch / "squeue.modes").write_text(rng.choice(["", "", "fail\n"]))
-            begin = campaign.tick if (campaign.root / "grouser.db").exists() else campaign.submit
-            died = begin(GROUSER_FAULT=str(rng.randrange(12))).returncode == -signal.SIGKILL
-            kills += died
-            lives -= died
-        for name in ("sbatch", "squeue"):
-            (campaign.batch / f"{name}.modes").unlink(missing_ok=True)
-        is_done = campaign.finish()
-        result["lost"] += (not is_done) + campaign.lost_jobs()
-        result["double_runs"] += campaign.double_runs()
-        result["bit_mismatches"] += is_done and campaign.hashes() != calm
-        result["campaigns"] += 1
-        if not is_done:
-            print(f"seed {seed}: not done in {campaign.folder}", file=sys.stderr)
-        else:
-            shutil.rmtree(campaign.folder)
-        seed += 1
-        print(f"  {kills} managers killed", file=sys.stderr, flush=True)
-    result["manager_kills"] = kills
+    while result["manager_kills"] < args.manager_kills:
+        left = args.manager_kills - result["manager_kills"]
+        count = min(args.jobs, -(-left // KILLS_EACH))
+        with ThreadPoolExecutor(args.jobs) as pool:
+            for found in pool.map(lambda one: kill_managers(args, work, calm, one,
+                                                            min(KILLS_EACH, -(-left // count))),
+                                  range(seed, seed + count)):
+                add_up(result, found)
+        seed += count
+        print(f"  {result['manager_kills']} managers killed", file=sys.stderr, flush=True)
 
 
 def engine_command(args, folder, bed=None):
@@ -173,6 +191,34 @@ def run_engine(command, **more):
                           check=False).returncode
 
 
+def kill_engines(args, work, bed, straight, duration, seed, lives):
+    """One run whose engines die so often. @return what to add to the result"""
+    rng = random.Random(seed)
+    folder = work / f"killed-{seed}"
+    prepare_case(folder, wheel=True)
+    kills = in_checkpoint = 0
+    code = None
+    while code is None:
+        if kills == lives:
+            code = run_engine(engine_command(args, folder, bed))
+            break
+        engine = subprocess.Popen(engine_command(args, folder, bed), stdout=subprocess.DEVNULL,
+                                  stderr=subprocess.DEVNULL)
+        try:
+            code = engine.wait(rng.uniform(0.0, 0.5 * duration))
+        except subprocess.TimeoutExpired:
+            engine.kill()
+            engine.wait()
+            kills += 1
+            in_checkpoint += any(not file.with_suffix(".json").exists()
+                                 for file in (folder / "checkpoints").glob("*.h5"))
+    same = code == 0 and outcome_of(folder)["state_hash"] == outcome_of(straight)["state_hash"]
+    same = same and (folder / "series.csv").read_bytes() == (straight / "series.csv").read_bytes()
+    shutil.rmtree(folder)
+    return {"engine_kills": kills, "engine_kills_in_checkpoint": in_checkpoint,
+            "bit_mismatches": int(not same)}
+
+
 def engine_kills(args, work, result):
     """The real engine dies at random times, many of them inside a checkpoint."""
     bed = work / "bed"
@@ -183,37 +229,18 @@ def engine_kills(args, work, result):
     begun = time.time()
     assert run_engine(engine_command(args, straight, bed)) == 0, "the wheel does not run"
     duration = time.time() - begun
-    rng = random.Random(args.seed)
-    kills = in_checkpoint = 0
-    while kills < args.engine_kills:
-        folder = work / "killed"
-        shutil.rmtree(folder, ignore_errors=True)
-        prepare_case(folder, wheel=True)
-        lives = min(40, args.engine_kills - kills)
-        while True:
-            if lives == 0:
-                code = run_engine(engine_command(args, folder, bed))
-                break
-            engine = subprocess.Popen(engine_command(args, folder, bed), stdout=subprocess.DEVNULL,
-                                      stderr=subprocess.DEVNULL)
-            try:
-                code = engine.wait(rng.uniform(0.0, 0.5 * duration))
-                break
-            except subprocess.TimeoutExpired:
-                engine.kill()
-                engine.wait()
-            kills += 1
-            lives -= 1
-            files = folder / "checkpoints"
-            in_checkpoint += any(not file.with_suffix(".json").exists()
-                                 for file in files.glob("*.h5"))
-        same = code == 0 and outcome_of(folder)["state_hash"] == outcome_of(straight)["state_hash"]
-        same = same and ((folder / "series.csv").read_bytes() ==
-                         (straight / "series.csv").read_bytes())
-        result["bit_mismatches"] += not same
-        print(f"  {kills} engines killed", file=sys.stderr, flush=True)
-    result["engine_kills"] = kills
-    result["engine_kills_in_checkpoint"] = in_checkpoint
+    result["engine_kills"] = result["engine_kills_in_checkpoint"] = 0
+    seed = args.seed
+    while result["engine_kills"] < args.engine_kills:
+        left = args.engine_kills - result["engine_kills"]
+        count = min(args.jobs, -(-left // ENGINE_KILLS_EACH))
+        with ThreadPoolExecutor(args.jobs) as pool:
+            for found in pool.map(lambda one: kill_engines(args, work, bed, straight, duration, one,
+                                                           min(ENGINE_KILLS_EACH, -(-left // count))),
+                                  range(seed, seed + count)):
+                add_up(result, found)
+        seed += count
+        print(f"  {result['engine_kills']} engines killed", file=sys.stderr, flush=True)
     return bed, outcome_of(straight)["state_hash"]
 
 
@@ -324,6 +351,7 @@ def main():
     parser.add_argument("--manager-kills", type=int, default=1000)
     parser.add_argument("--engine-kills", type=int, default=500)
     parser.add_argument("--no-space", type=int, default=100, help="calls tried; 0 = all")
+    parser.add_argument("--jobs", type=int, default=4, help="campaigns at work at one time")
     parser.add_argument("--two-ticks", type=int, default=100)
     args = parser.parse_args()
     args.bin, args.fake_engine = args.bin.resolve(), args.fake_engine.resolve()

@@ -90,6 +90,15 @@ fs::path find_root(const std::string& where) {
          "give a campaign's root, its name below runs/ or its YAML, here or after -C");
 }
 
+std::vector<fs::path> find_roots(const std::vector<std::string>& where) {
+  std::vector<fs::path> roots;
+  for (const std::string& one : where) roots.push_back(find_root(one));
+  if (where.empty() && !is_root("."))
+    for (const fs::path& root : roots_here())
+      roots.push_back(fs::absolute(root).lexically_normal());
+  return roots.empty() ? std::vector<fs::path>{find_root("")} : roots;
+}
+
 fs::path root_of(const std::string& name, const std::string& given) {
   return fs::absolute(given.empty() ? fs::path("runs") / name : fs::path(given)).lexically_normal();
 }

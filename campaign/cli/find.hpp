@@ -15,6 +15,9 @@ namespace grouser {
 /// below ./runs. @throws ConfigError naming what there is; StorageError. Local.
 std::filesystem::path find_root(const std::string& where);
 
+/// The roots of several; of none named, all campaigns below ./runs. @throws as find_root. Local.
+std::vector<std::filesystem::path> find_roots(const std::vector<std::string>& where);
+
 /// The root for a campaign of that name: `given`, or runs/NAME here. Absolute. Local.
 std::filesystem::path root_of(const std::string& name, const std::string& given);
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "campaign/cli/foreground.hpp"
 
-#include <signal.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <iostream>
 
+#include "campaign/cli/interrupt.hpp"
 #include "campaign/cli/progress.hpp"
 #include "campaign/drive/lease_guard.hpp"
 
@@ -16,32 +15,6 @@ namespace {
 
 // A terminal is drawn anew at every look; a log file gets a line per run only so often.
 constexpr double kLogInterval = 10.0;
-
-std::atomic<bool> is_interrupted{false};
-
-void note_interrupt(int) { is_interrupted = true; }
-
-// While it lives, INT and TERM set a flag, and interrupt the sleep between ticks.
-class InterruptGuard {
- public:
-  InterruptGuard() {
-    is_interrupted = false;
-    struct sigaction action {};
-    action.sa_handler = note_interrupt;
-    ::sigaction(SIGINT, &action, &old_int_);
-    ::sigaction(SIGTERM, &action, &old_term_);
-  }
-  InterruptGuard(const InterruptGuard&) = delete;
-  InterruptGuard& operator=(const InterruptGuard&) = delete;
-  ~InterruptGuard() {
-    ::sigaction(SIGINT, &old_int_, nullptr);
-    ::sigaction(SIGTERM, &old_term_, nullptr);
-  }
-
- private:
-  struct sigaction old_int_ {};
-  struct sigaction old_term_ {};
-};
 
 // The progress lines; on a terminal the new ones replace the old.
 class ProgressBlock {
@@ -93,7 +66,7 @@ bool drive_in_foreground(OpenCampaign& campaign, const DriveOptions& options) {
   const InterruptGuard guard;
   ProgressBlock block;
   bool is_waiting = false;
-  while (!is_interrupted) {
+  while (!InterruptGuard::is_interrupted()) {
     try {
       for (const std::string& message : campaign.tick(options, 0.0).messages)
         block.print_message(message);

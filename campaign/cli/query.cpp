@@ -3,9 +3,9 @@
 #include <memory>
 #include <stdexcept>
 
+#include "campaign/cli/answers.hpp"
 #include "campaign/cli/exit_codes.hpp"
 #include "campaign/cli/find.hpp"
-#include "campaign/cli/json_text.hpp"
 #include "campaign/cli/text.hpp"
 #include "campaign/cli/verbs.hpp"
 
@@ -36,7 +36,7 @@ int query(const Options& options) {
     std::cout << text_table(table.columns, table.rows);
     return exit_codes::kOk;
   }
-  std::cout << json_text(Json{{"schema", 1}, {"rows", rows_json(table)}});
+  std::cout << json_text(query_answer(table));
   return exit_codes::kOk;
 }
 

@@ -2,9 +2,9 @@
 #include <iostream>
 #include <memory>
 
+#include "campaign/cli/answers.hpp"
 #include "campaign/cli/exit_codes.hpp"
 #include "campaign/cli/find.hpp"
-#include "campaign/cli/json_text.hpp"
 #include "campaign/cli/text.hpp"
 #include "campaign/cli/verbs.hpp"
 
@@ -16,52 +16,6 @@ struct Options {
   std::vector<std::string> runs;
   bool as_json = false;
 };
-
-Json json_of(const ChunkRow& chunk) {
-  return Json{{"position", chunk.position},
-              {"state", word_of(chunk.state)},
-              {"until_time_s", chunk.until_time ? Json(*chunk.until_time) : Json()},
-              {"step", chunk.step},
-              {"time_s", chunk.time}};
-}
-
-Json json_of(const AttemptRow& attempt) {
-  return Json{{"number", attempt.number},
-              {"token", attempt.token},
-              {"job", attempt.job},
-              {"state", word_of(attempt.state)},
-              {"code", attempt.code ? Json(*attempt.code) : Json()},
-              {"class", attempt.outcome_class},
-              {"reason", attempt.reason},
-              {"start_step", attempt.start_step},
-              {"step", attempt.step},
-              {"time_s", attempt.time},
-              {"wall_seconds", attempt.wall_seconds},
-              {"compute_seconds", attempt.compute_seconds},
-              {"checkpoint_seconds", attempt.checkpoint_seconds},
-              {"checkpoint", attempt.checkpoint},
-              {"state_hash", attempt.state_hash}};
-}
-
-Json json_of(const Store& store, const RunRow& run) {
-  Json chunks = Json::array();
-  for (const ChunkRow& chunk : store.chunks(run.id)) chunks.push_back(json_of(chunk));
-  Json attempts = Json::array();
-  for (const AttemptRow& attempt : store.attempts(run.id)) attempts.push_back(json_of(attempt));
-  return Json{{"label", run.label},
-              {"kind", word_of(run.kind)},
-              {"state", word_of(run.state)},
-              {"reason", run.reason},
-              {"directory", run.directory.string()},
-              {"key", run.key},
-              {"in_plan", run.in_plan},
-              {"step", run.step},
-              {"time_s", run.time},
-              {"checkpoint", run.checkpoint},
-              {"state_hash", run.state_hash},
-              {"chunks", chunks},
-              {"attempts", attempts}};
-}
 
 void print_run(const Store& store, const std::filesystem::path& root, const RunRow& run) {
   std::cout << run.label << "  " << word_of(run.kind) << "  " << word_of(run.state);
@@ -99,9 +53,7 @@ int show(const Options& options) {
   const Store store = Store::open_read_only(root / Store::kFileName);
   const auto runs = select_runs(store, options.runs, false);
   if (options.as_json) {
-    Json all = Json::array();
-    for (const RunRow& run : runs) all.push_back(json_of(store, run));
-    std::cout << json_text(Json{{"schema", 1}, {"runs", all}});
+    std::cout << json_text(show_answer(store, runs));
     return exit_codes::kOk;
   }
   for (const RunRow& run : runs) print_run(store, root, run);

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <unistd.h>
+
 #include <algorithm>
 #include <iostream>
 #include <memory>
 
+#include "campaign/cli/answers.hpp"
 #include "campaign/cli/attention.hpp"
 #include "campaign/cli/exit_codes.hpp"
 #include "campaign/cli/find.hpp"
-#include "campaign/cli/json_text.hpp"
-#include "campaign/cli/progress.hpp"
+#include "campaign/cli/interrupt.hpp"
+#include "campaign/cli/screen.hpp"
 #include "campaign/cli/text.hpp"
 #include "campaign/cli/verbs.hpp"
 #include "campaign/drive/clock.hpp"
@@ -25,60 +28,6 @@ struct Options {
   bool check = false;
   bool refresh = false;
 };
-
-// Its job has ended, and what follows is for the next tick to decide.
-bool is_unsettled(const RunView& view) { return view.news && view.news->has_ended; }
-
-Json json_of(const RunView& view) {
-  Json axes = Json::object();
-  for (const AxisLabel& point : view.run.axes) axes[point.axis] = point.label;
-  Json json{{"label", view.run.label},
-            {"kind", word_of(view.run.kind)},
-            {"state", word_of(view.run.state)},
-            {"reason", view.run.reason},
-            {"unsettled", is_unsettled(view)},
-            {"directory", view.run.directory.string()},
-            {"axes", axes},
-            {"step", view.run.step},
-            {"time_s", view.time},
-            {"end_time_s", view.end_time > 0.0 ? Json(view.end_time) : Json()},
-            {"chunks", view.chunks},
-            {"chunks_done", view.chunks_done},
-            {"attempts", view.attempts},
-            {"failures", view.run.failures},
-            {"checkpoint", view.run.checkpoint},
-            {"state_hash", view.run.state_hash},
-            {"progress", Json()}};
-  if (view.progress)
-    json["progress"] = Json{{"phase", view.progress->phase},
-                            {"step", view.progress->step},
-                            {"particle_steps_per_second", view.progress->particle_steps_per_second},
-                            {"seconds_left", view.progress->seconds_left}};
-  return json;
-}
-
-auto count_unsettled(const std::vector<RunView>& views) {
-  return std::count_if(views.begin(), views.end(), is_unsettled);
-}
-
-void print_json(const CampaignRow& campaign, const std::filesystem::path& root,
-                const std::vector<RunView>& views, std::size_t left_out) {
-  Json counts = Json::object();
-  for (const RunView& view : views) {
-    Json& count = counts[word_of(view.run.state)];
-    count = count.is_null() ? 1 : count.get<int>() + 1;
-  }
-  Json runs = Json::array();
-  for (const RunView& view : views) runs.push_back(json_of(view));
-  std::cout << json_text(Json{{"schema", 1},
-                              {"campaign", campaign.name},
-                              {"title", campaign.title},
-                              {"root", root.string()},
-                              {"counts", counts},
-                              {"left_out", left_out},
-                              {"unsettled", count_unsettled(views)},
-                              {"runs", runs}});
-}
 
 void print_table(const CampaignRow& campaign, const std::filesystem::path& root,
                  const std::vector<RunView>& views, std::size_t left_out) {
@@ -109,8 +58,9 @@ bool needs_attention(const RunView& view) {
   return waits_for_person(view.run.state) || (view.news && view.news->has_failed);
 }
 
-// A campaign stands still when nobody ticks, and nobody else would say so.
-void say_what_is_due(const std::vector<RunView>& views, const std::filesystem::path& root) {
+// A campaign stands still when nobody ticks, and nobody else would say so. @return "" or what is
+// due
+std::string what_is_due(const std::vector<RunView>& views) {
   const auto unsettled = count_unsettled(views);
   std::vector<RunRow> runs;
   bool is_at_work = false;
@@ -119,41 +69,48 @@ void say_what_is_due(const std::vector<RunView>& views, const std::filesystem::p
     is_at_work = is_at_work || (is_active(view.run.state) && !is_unsettled(view));
   }
   if (unsettled > 0)
-    std::cout << unsettled << (unsettled == 1 ? " job has" : " jobs have")
-              << " ended since the last tick";
-  else if (!is_at_work && !is_at_rest(runs))
-    std::cout << "no job is at work, and there is more to do";
-  else
-    return;
-  std::cout << "; unless a manager is at work, go on with\n  grouser tick -C " << root.string()
-            << "\n";
+    return std::to_string(unsettled) + (unsettled == 1 ? " job has" : " jobs have") +
+           " ended since the last tick";
+  return !is_at_work && !is_at_rest(runs) ? "no job is at work, and there is more to do" : "";
 }
 
-// Jobs of this machine are looked at: that costs nobody anything. A batch system is asked only when
-// a person says so.
-std::unique_ptr<Scheduler> scheduler_to_ask(const std::filesystem::path& root, const Store& store,
-                                            bool refresh) {
-  const SchedulerKind& kind = scheduler_kind(job_settings(root, store).settings.scheduler);
-  return kind.is_batch && !refresh ? nullptr : kind.make(root);
+int watch(const Options& options, const std::filesystem::path& root, const Store& store) {
+  const std::string title = store.campaign().name + "  " + root.string();
+  SystemClock clock;
+  const InterruptGuard guard;
+  const FullScreen screen;
+  while (!InterruptGuard::is_interrupted() && std::cout) {
+    const auto views = look_at_runs(root, store, clock.now(), options.refresh);
+    const std::string due = what_is_due(views);
+    screen.show(screen_text(title, views, screen.columns(), screen.lines(),
+                            due.empty() ? "Ctrl-C leaves; jobs go on" : due + "; grouser tick"));
+    clock.sleep(kWatchInterval);
+  }
+  return exit_codes::kOk;
+}
+
+void print_once(const Options& options, const std::filesystem::path& root, const Store& store,
+                const std::vector<RunView>& views) {
+  if (options.as_json) {
+    std::cout << json_text(status_answer(store, root, views)) << std::flush;
+    return;
+  }
+  print_table(store.campaign(), root, views, count_left_out(store));
+  if (const std::string due = what_is_due(views); !due.empty())
+    std::cout << due << "; unless a manager is at work, go on with\n  grouser tick -C "
+              << root.string() << "\n";
+  std::cout << std::flush;
 }
 
 int status(const Options& options) {
   const auto root = find_root(options.where);
   const Store store = Store::open_read_only(root / Store::kFileName);
-  const CampaignRow campaign = store.campaign();
+  if (options.watch && !options.as_json && ::isatty(STDOUT_FILENO) == 1)
+    return watch(options, root, store);
   SystemClock clock;
-  const auto scheduler = scheduler_to_ask(root, store, options.refresh);
   for (;;) {
-    auto views = view_runs(store, root, observe(root, store, scheduler.get(), clock.now()));
-    count_work(store, views);
-    const std::size_t left_out = count_left_out(store);
-    if (options.watch && !options.as_json) std::cout << "\033[H\033[2J";
-    if (options.as_json)
-      print_json(campaign, root, views, left_out);
-    else
-      print_table(campaign, root, views, left_out);
-    if (!options.as_json) say_what_is_due(views, root);
-    std::cout << std::flush;
+    const auto views = look_at_runs(root, store, clock.now(), options.refresh);
+    print_once(options, root, store, views);
     // Nobody would see another look.
     if (!options.watch || !std::cout) {
       const bool waits = std::any_of(views.begin(), views.end(), needs_attention);
@@ -171,7 +128,8 @@ void add_status(CLI::App& app, int& code) {
       "status", "where every run is; looks at database, files and the jobs of this machine");
   verb->add_option("-C,--campaign,campaign", options->where, "root, name or YAML of the campaign");
   verb->add_flag("--json", options->as_json, "as JSON");
-  verb->add_flag("--watch", options->watch, "again every two seconds until Ctrl-C");
+  verb->add_flag("--watch", options->watch,
+                 "again every two seconds until Ctrl-C; on a terminal the whole screen, with bars");
   verb->add_flag("--refresh", options->refresh, "ask a batch scheduler as well");
   verb->add_flag("--check", options->check,
                  "exit code 1 when a run is HELD or FAILED, or its job was found dead");

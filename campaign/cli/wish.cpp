@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <iostream>
-#include <set>
 
 #include "campaign/cli/attention.hpp"
 #include "campaign/cli/exit_codes.hpp"
@@ -35,28 +34,6 @@ void refuse_without_directory(const std::filesystem::path& root, const std::file
   if (!problems.empty()) throw ConfigError(problems);
 }
 
-// @return the runs to which the wish meant something
-std::set<RunId> write_wishes(OpenCampaign& campaign, const WishOptions& options, Wish wish,
-                             const std::string& done_word) {
-  const LeaseGuard lease(campaign.store(), campaign.clock(), kLeasePatience,
-                         options.drive.take_over);
-  const auto runs = select_runs(campaign.store(), options.runs, options.all);
-  if (is_resume(wish))
-    refuse_without_directory(campaign.root(), campaign.store().campaign().source, runs);
-  std::set<RunId> meant;
-  for (const RunRow& run : runs) {
-    if (is_resume(wish) && !run.in_plan) {
-      if (!options.all) std::cout << run.label << ": the YAML no longer has it, nothing to do\n";
-    } else if (make_wish(campaign.store(), run, wish, campaign.clock().now())) {
-      meant.insert(run.id);
-      std::cout << run.label << ": " << done_word << "\n";
-    } else if (!options.all) {
-      std::cout << run.label << ": is " << word_of(run.state) << ", nothing to do\n";
-    }
-  }
-  return meant;
-}
-
 bool any_ending(const Store& store, const std::set<RunId>& runs) {
   const auto active = store.active_attempts();
   return std::any_of(active.begin(), active.end(), [&](const AttemptRow& attempt) {
@@ -82,10 +59,31 @@ void add_wish_options(CLI::App& verb, WishOptions& options) {
   add_drive_options(verb, options.drive);
 }
 
+std::set<RunId> write_wishes(OpenCampaign& campaign, const WishOptions& options, Wish wish,
+                             const std::string& done_word, std::ostream& out) {
+  const LeaseGuard lease(campaign.store(), campaign.clock(), kLeasePatience,
+                         options.drive.take_over);
+  const auto runs = select_runs(campaign.store(), options.runs, options.all);
+  if (is_resume(wish))
+    refuse_without_directory(campaign.root(), campaign.store().campaign().source, runs);
+  std::set<RunId> meant;
+  for (const RunRow& run : runs) {
+    if (is_resume(wish) && !run.in_plan) {
+      if (!options.all) out << run.label << ": the YAML no longer has it, nothing to do\n";
+    } else if (make_wish(campaign.store(), run, wish, campaign.clock().now())) {
+      meant.insert(run.id);
+      out << run.label << ": " << done_word << "\n";
+    } else if (!options.all) {
+      out << run.label << ": is " << word_of(run.state) << ", nothing to do\n";
+    }
+  }
+  return meant;
+}
+
 int carry_out(const WishOptions& options, Wish wish, const std::string& done_word,
               double patience) {
   OpenCampaign campaign(find_root(options.where));
-  const auto meant = write_wishes(campaign, options, wish, done_word);
+  const auto meant = write_wishes(campaign, options, wish, done_word, std::cout);
   const double end = campaign.clock().now() + patience;
   for (;;) {
     for (const std::string& message : campaign.tick(options.drive, kLeasePatience).messages)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ostream>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,11 @@ struct WishOptions {
 };
 
 void add_wish_options(CLI::App& verb, WishOptions& options);
+
+/// Writes the wish down for each chosen run, saying so on `out`; ticks carry it out.
+/// @return the runs to which it meant something. @throws ConfigError, CampaignBusy
+std::set<RunId> write_wishes(OpenCampaign& campaign, const WishOptions& options, Wish wish,
+                             const std::string& done_word, std::ostream& out);
 
 /// Writes the wish down for each chosen run and ticks until no chosen run is about to end, or
 /// `patience` seconds have passed. @return exit code

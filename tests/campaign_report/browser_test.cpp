@@ -1,73 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <regex>
-#include <sstream>
 
 #include "campaign/report/html.hpp"
 #include "campaign/report/page.hpp"
 #include "markup.hpp"
 #include "synthetic.hpp"
+#include "tests/support/browser.hpp"
 
 namespace grouser {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string text_of(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
-
-/// Runs headless Chromium on local files and gives back what it made of them.
-class Browser {
- public:
-  Browser()
-      : folder_(fs::path(testing::TempDir()) / ("grouser_browser_" + std::to_string(getpid()))) {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_ / "profile");
-  }
-  ~Browser() {
-    std::error_code ignored;  // a browser process on its way out may still hold a file
-    fs::remove_all(folder_, ignored);
-  }
-  Browser(const Browser&) = delete;
-  Browser& operator=(const Browser&) = delete;
-
-  /// What went to standard output; `errors` becomes what went to standard error.
-  std::string run(const std::string& options, const fs::path& page, std::string& errors) const {
-    const fs::path out = folder_ / "out";
-    const fs::path err = folder_ / "err";
-    const std::string command =
-        "timeout 120 chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run "
-        "--disable-background-networking --disable-component-update --disable-sync "
-        "--hide-scrollbars --enable-logging=stderr --user-data-dir='" +
-        (folder_ / "profile").string() + "' " + options + " 'file://" + page.string() + "' >'" +
-        out.string() + "' 2>'" + err.string() + "'";
-    const int status = std::system(command.c_str());
-    errors = text_of(err);
-    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0)
-        << "chromium did not run; it is needed for the tests labelled browser\n"
-        << errors;
-    return text_of(out);
-  }
-
-  fs::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return folder_ / name;
-  }
-  const fs::path& folder() const { return folder_; }
-
- private:
-  fs::path folder_;
-};
 
 std::string report() {
   const ReportData data = synthetic::campaign(2);

@@ -178,10 +178,14 @@ class FakeEngine {
 
   void write_row() {
     const double x = static_cast<double>(state_.value >> 11) * 0x1p-53;
+    const double spin = input_.has_wheel
+                            ? input_.wheel.forward_speed / (0.5 * input_.wheel.diameter) /
+                                  std::max(1.0 - input_.wheel.slip, 0.01)
+                            : 0.0;
     series_ << state_.step << "," << state_.time() << ","
             << (input_.has_wheel ? "driving" : "settling") << ","
             << state_.time() * input_.wheel.forward_speed << "," << 0.01 + 0.001 * x << ","
-            << input_.wheel.slip << ",,0," << input_.wheel.forward_speed << ",0,"
+            << input_.wheel.slip << ",0," << spin << "," << input_.wheel.forward_speed << ",0,"
             << 100 * input_.wheel.slip + x << "," << input_.wheel.load << ",0," << 120 + x << ","
             << 20 + x << "," << 0.1 * x << "," << 0.2 * x << "," << 0.3 * x << ",1e-3,0.01,300\n"
             << std::flush;
