@@ -82,12 +82,11 @@ std::string screen_text(const std::string& title, const std::vector<RunView>& vi
     done += share_of(view);
     label_width = std::max(label_width, std::min<std::size_t>(view.run.label.size(), 32));
   }
-  std::stable_sort(order.begin(), order.end(), [](const RunView* a, const RunView* b) {
-    return rank_of(*a) < rank_of(*b);
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [](const RunView* a, const RunView* b) { return rank_of(*a) < rank_of(*b); });
   const double share = views.empty() ? 0.0 : done / static_cast<double>(views.size());
-  std::vector<std::string> text{title, bar_text(share, kBarWidth) + percent(share) + "  " +
-                                           count_states(views)};
+  std::vector<std::string> text{
+      title, bar_text(share, kBarWidth) + percent(share) + "  " + count_states(views)};
   const std::size_t below = last.empty() ? 0 : 1;
   const std::size_t room = lines > text.size() + below ? lines - text.size() - below : 0;
   const std::size_t shown = order.size() <= room ? order.size() : room > 0 ? room - 1 : 0;

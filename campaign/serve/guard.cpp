@@ -47,7 +47,7 @@ bool is_loopback(const std::string& address) {
 
 std::set<std::string> own_names(const std::string& address) {
   std::set<std::string> names{address.find(':') == std::string::npos ? address
-                                                                      : "[" + address + "]"};
+                                                                     : "[" + address + "]"};
   if (is_loopback(address)) names.insert({"localhost", "127.0.0.1", "[::1]"});
   return names;
 }
@@ -74,9 +74,9 @@ bool carries_token(const RequestOrigin& request, const std::string& token) {
   const std::string& given = request.authorization;
   std::size_t difference = given.size() ^ wanted.size();
   for (std::size_t i = 0; i < wanted.size(); ++i)
-    difference |= static_cast<std::size_t>(
-        static_cast<unsigned char>(i < given.size() ? given[i] : 0) ^
-        static_cast<unsigned char>(wanted[i]));
+    difference |=
+        static_cast<std::size_t>(static_cast<unsigned char>(i < given.size() ? given[i] : 0) ^
+                                 static_cast<unsigned char>(wanted[i]));
   return !token.empty() && difference == 0;
 }
 
@@ -94,9 +94,9 @@ std::string token_of(const std::filesystem::path& file) {
   const std::string token = trimmed(read_file(file).value_or(""));
   if (token.size() < 16 || token.size() > 512 ||
       !std::all_of(token.begin(), token.end(), [](char c) { return c > ' ' && c < 127; }))
-    throw ConfigError({Problem{file.string(), 0, 0, "",
-                               "a token is one word of 16 to 512 characters",
-                               "delete the file: a new one is made"}});
+    throw ConfigError(
+        {Problem{file.string(), 0, 0, "", "a token is one word of 16 to 512 characters",
+                 "delete the file: a new one is made"}});
   return token;
 }
 

@@ -11,10 +11,10 @@ namespace grouser {
 
 /// What a request says about where it comes from; "" = the header is not there.
 struct RequestOrigin {
-  std::string host;            ///< Host
-  std::string origin;          ///< Origin
-  std::string fetch_site;      ///< Sec-Fetch-Site
-  std::string authorization;   ///< Authorization
+  std::string host;           ///< Host
+  std::string origin;         ///< Origin
+  std::string fetch_site;     ///< Sec-Fetch-Site
+  std::string authorization;  ///< Authorization
 };
 
 /// Names under which the service may be addressed: the address itself and, for a loopback one,

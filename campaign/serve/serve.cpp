@@ -106,8 +106,9 @@ int serve(const Options& options) {
                     return hand.act(root, verb, run);
                   });
   const int port = service.bind();
-  const std::string host =
-      options.address.find(':') == std::string::npos ? options.address : "[" + options.address + "]";
+  const std::string host = options.address.find(':') == std::string::npos
+                               ? options.address
+                               : "[" + options.address + "]";
   std::cout << "http://" << host << ":" << port << "/"
             << (options.token_file.empty()
                     ? "  (read-only)"

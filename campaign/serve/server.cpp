@@ -65,9 +65,8 @@ std::string param_of(const Request& request, const char* name) {
 std::size_t number_of(const Request& request, const char* name, std::size_t otherwise) {
   const std::string text = param_of(request, name);
   if (text.empty()) return otherwise;
-  if (text.size() > 9 || !std::all_of(text.begin(), text.end(), [](unsigned char c) {
-        return std::isdigit(c) != 0;
-      }))
+  if (text.size() > 9 ||
+      !std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
     throw Refusal{400, std::string(name) + " must be a number"};
   return static_cast<std::size_t>(std::stoul(text));
 }
@@ -152,7 +151,8 @@ struct Service::Impl {
       set_error(response, 403, why);
     else if (!is_read && options.token.empty())
       set_error(response, 403, "the service is read-only: start it with --token-file");
-    else if ((!is_read || (options.is_private && !is_page)) && !carries_token(origin, options.token))
+    else if ((!is_read || (options.is_private && !is_page)) &&
+             !carries_token(origin, options.token))
       set_error(response, 401, "the token is missing or wrong");
     else
       return httplib::Server::HandlerResponse::Unhandled;
@@ -290,9 +290,8 @@ struct Service::Impl {
 
   void answer_readers() {
     const auto page = [this](const char* path, const char* text, const char* type) {
-      get(path, [text, type](const Request&, Response& response) {
-        response.set_content(text, type);
-      });
+      get(path,
+          [text, type](const Request&, Response& response) { response.set_content(text, type); });
     };
     page("/", kDashboardHtml, "text/html; charset=utf-8");
     page("/dashboard.js", kDashboardJs, "text/javascript; charset=utf-8");
@@ -301,8 +300,7 @@ struct Service::Impl {
     get("/api/campaigns", [this](const Request&, Response& r) { set_json(r, list_campaigns()); });
     get("/api/events", [this](const Request& q, Response& r) { start_stream(q, r); });
     get_json("/api/status", [](const Request&, const Store& store, Campaign& campaign) {
-      return status_answer(store, campaign.root,
-                           look_at_runs(campaign.root, store, now(), false));
+      return status_answer(store, campaign.root, look_at_runs(campaign.root, store, now(), false));
     });
     get_json("/api/show", [](const Request& request, const Store& store, Campaign&) {
       return show_answer(store, {run_of(store, request)});
@@ -347,8 +345,7 @@ struct Service::Impl {
                     const std::string run = param_of(request, "run");
                     if (run.empty() && std::string(verb) != "tick")
                       throw Refusal{400, "name a run"};
-                    set_json(response,
-                             Json{{"schema", 1}, {"done", action(root, verb, run)}});
+                    set_json(response, Json{{"schema", 1}, {"done", action(root, verb, run)}});
                   }));
   }
 
@@ -399,9 +396,9 @@ int Service::bind() {
                    : impl_->server.bind_to_port(options.address, options.port) ? options.port
                                                                                : -1;
   if (port > 0) return port;
-  throw ConfigError({Problem{options.address, 0, 0, "port " + std::to_string(options.port),
-                             "cannot be listened at",
-                             "another program may have it: choose another --port"}});
+  throw ConfigError(
+      {Problem{options.address, 0, 0, "port " + std::to_string(options.port),
+               "cannot be listened at", "another program may have it: choose another --port"}});
 }
 
 void Service::run() { impl_->server.listen_after_bind(); }

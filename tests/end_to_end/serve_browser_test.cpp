@@ -40,7 +40,8 @@ TEST_F(DashboardInBrowser, ShowsRunsSlipPullJobsLedgerAndLogLive) {
   EXPECT_GE(count_of(dom, "<rect class=\"done\""), 1u + 3u * 3u) << "each job in the timeline";
   EXPECT_NE(dom.find("id=\"goodput\""), std::string::npos);
   EXPECT_TRUE(std::regex_search(dom, std::regex("<pre id=\"log\">")));
-  EXPECT_NE(dom.find("id=\"actions\" hidden"), std::string::npos) << "nothing to change without a token";
+  EXPECT_NE(dom.find("id=\"actions\" hidden"), std::string::npos)
+      << "nothing to change without a token";
 }
 
 // A label is the one text of a person's that the page shows; titles come from the YAML.

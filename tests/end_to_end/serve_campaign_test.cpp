@@ -31,8 +31,7 @@ class ServedCampaign : public CampaignRun {
     return answer ? Json::parse(answer->body) : Json();
   }
   static int post(int port, const std::string& path, const httplib::Headers& headers) {
-    const auto answer =
-        httplib::Client("127.0.0.1", port).Post(path, headers, "", "text/plain");
+    const auto answer = httplib::Client("127.0.0.1", port).Post(path, headers, "", "text/plain");
     return answer ? answer->status : 0;
   }
   Json printed(const std::vector<std::string>& words) const {
@@ -81,9 +80,9 @@ TEST_F(ServedCampaign, ChangesNothingWithoutATokenNorForAnotherPage) {
       << "a name that was made to point here";
   EXPECT_EQ(post(port, "/api/stop", {right}), 400) << "no run is named";
   EXPECT_EQ(post(port, "/api/tick", {right}), 200);
-  EXPECT_EQ(post(port, "/api/tick",
-                 {right, {"Origin", "http://127.0.0.1:" + std::to_string(port)}}),
-            200);
+  EXPECT_EQ(
+      post(port, "/api/tick", {right, {"Origin", "http://127.0.0.1:" + std::to_string(port)}}),
+      200);
 }
 
 TEST_F(ServedCampaign, BoundsWhatItIsSent) {

@@ -23,7 +23,8 @@ inline std::string text_of(const std::filesystem::path& file) {
 class Browser {
  public:
   Browser()
-      : folder_(std::filesystem::path(testing::TempDir()) / ("grouser_browser_" + std::to_string(getpid()))) {
+      : folder_(std::filesystem::path(testing::TempDir()) /
+                ("grouser_browser_" + std::to_string(getpid()))) {
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_ / "profile");
   }
@@ -47,8 +48,8 @@ class Browser {
         "timeout 120 chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run "
         "--disable-background-networking --disable-component-update --disable-sync "
         "--hide-scrollbars --enable-logging=stderr --user-data-dir='" +
-        (folder_ / "profile").string() + "' " + options + " '" + address + "' >'" +
-        out.string() + "' 2>'" + err.string() + "'";
+        (folder_ / "profile").string() + "' " + options + " '" + address + "' >'" + out.string() +
+        "' 2>'" + err.string() + "'";
     const int status = std::system(command.c_str());
     errors = text_of(err);
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0)
