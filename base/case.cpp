@@ -197,6 +197,23 @@ void describe_numerics(FieldVisitor& v, NumericsCase& n) {
       n.max_overlap, "1", Range::above_up_to(0.0, 1.0));
 }
 
+void describe_activity(FieldVisitor& v, ActivityCase& a) {
+  v.word(
+      {"mode", "all: every grain is computed; sleep: those at rest sleep in wheel runs", kOptional},
+      a.mode, {"all", "sleep"});
+  v.quantity(
+      {"speed", "speed below which a grain may fall asleep, over sqrt(g d), d the mean diameter",
+       kOptional},
+      a.speed, "1", Range::above_up_to(0.0, 0.1));
+  v.quantity(
+      {"imbalance",
+       "unbalanced force that wakes a grain, over its weight; over half of it none falls asleep",
+       kOptional},
+      a.imbalance, "1", Range::above_up_to(0.0, 1.0));
+  v.integer({"interval", "time steps between looks at who falls asleep", kOptional}, a.interval, 1,
+            1000000);
+}
+
 void describe_output(FieldVisitor& v, OutputCase& o) {
   v.quantity({"series_interval", "simulated time between rows of the time series", kOptional},
              o.series_interval, "s", Range::positive());
@@ -305,11 +322,16 @@ void describe(FieldVisitor& v, Case& c) {
                    });
   v.group({"numerics", "time step and limits", kOptional},
           [&](FieldVisitor& inner) { describe_numerics(inner, c.numerics); });
+  v.group({"activity", "whether grains at rest are left out of the computation", kOptional},
+          [&](FieldVisitor& inner) { describe_activity(inner, c.activity); });
   v.group({"output", "what is written how often", kOptional},
           [&](FieldVisitor& inner) { describe_output(inner, c.output); });
   describe_time_step(v, c);
   check_placed(v, c);
   check_fluid(v, c);
+  v.rule("activity.mode", c.activity.mode == "all" || (!c.has_fluid && c.probes.empty()),
+         "sleep does not go with a fluid or with probes, which push grains that nothing touches",
+         "leave it out");
   const double grains = grain_count(c);
   v.rule("grains.size_curve", grains <= kMostGrains,
          "comes to " + rounded(grains) + " grains in the bed",
@@ -354,6 +376,7 @@ Case bed_case(const Case& input) {
   bed.has_wheel = false;
   bed.wheel = WheelCase{};
   bed.contact.grain_wheel = SurfaceCase{};
+  bed.activity = ActivityCase{};
   return bed;
 }
 
@@ -404,12 +427,15 @@ std::string content_key(const Case& input) {
   copy.numerics.max_overlap = NumericsCase{}.max_overlap;
   leave_out_unused(copy.wheel);
   // A step that follows from the input alone is in the key by the input, unless the shortest
-  // collision sets it, which is younger than the first keys. So is the scale of the stiffness.
+  // collision sets it, which is younger than the first keys. So are the scale of the stiffness
+  // and the activity.
   if (is_step_of_collision(copy)) copy.numerics.time_step = time_step_of(copy);
   YamlNode node = write_case(copy);
   if (copy.contact.stiffness_scale == 1.0)
     std::erase_if(node.find("contact")->entries,
                   [](const auto& entry) { return entry.first == "stiffness_scale"; });
+  if (copy.activity.mode == "all")
+    std::erase_if(node.entries, [](const auto& entry) { return entry.first == "activity"; });
   return hash_text(emit_yaml(node));
 }
 

@@ -107,6 +107,14 @@ struct NumericsCase {
                                    ///< judged broken [1]
 };
 
+/// Whether grains at rest sleep; docs/physics/activity.md.
+struct ActivityCase {
+  std::string mode = "all";  ///< "all" = every grain is computed, "sleep"
+  double speed = 0.02;       ///< below it a grain is slow, over sqrt(g d) of the mean diameter [1]
+  double imbalance = 0.5;    ///< unbalanced force that wakes, over the grain's weight [1]
+  std::int64_t interval = 20;  ///< steps between looks at who falls asleep
+};
+
 struct OutputCase {
   double series_interval = 1e-3;      ///< simulated time between rows of the time series [s]
   double checkpoint_interval = 0.05;  ///< simulated time between checkpoints [s]
@@ -129,6 +137,7 @@ struct Case {
   FluidCase fluid;
   std::vector<ProbeCase> probes;  ///< forces on single grains
   NumericsCase numerics;
+  ActivityCase activity;
   OutputCase output;
 };
 

@@ -20,6 +20,9 @@ CORES = 64  # of a node of platform.xml
 STEP = 100e-9  # seconds of a core for a particle-step
 LISTS = 400e-9  # seconds of a core for the new lists of a grain
 STEPS_PER_REBUILD = 50
+# Up to so many grains a rank takes those that need no ghosts first; kFewGrains of world_lists.cpp.
+FEW_GRAINS = 32768
+GRAINS = 793 * 347 * 131  # ScalingBed's
 # The simulator's own corrections of latency and bandwidth are those of an old Ethernet cluster.
 # Collectives as Open MPI chooses them at these sizes.
 OPTIONS = [
@@ -91,7 +94,7 @@ def main():
 
     print(f"{HEAD}\n|{'---|' * 10}")
     for ranks in (int(word) for word in options.ranks.split(",")):
-        run("plain", ranks)
+        run("plain", ranks, overlaps=GRAINS / ranks <= FEW_GRAINS)
     if options.svg:
         options.svg.write_text(efficiency_plot(points))
 

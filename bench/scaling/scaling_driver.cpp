@@ -151,7 +151,7 @@ void run_steps(const Communicator& ranks, const Costs& costs) {
     compute(core * (outer + twice));
     time.compute += spent();
     Communicator::StepTotals totals;
-    totals.sums.resize(5 * kBodies + 2);
+    totals.sums.resize(5 * kBodies + 3);
     totals.maxima.resize(6);
     ranks.combine(totals);
     time.agree += spent();

@@ -236,6 +236,7 @@ Outcome Run::execute() {
       if (*code != EngineCode::kFenceLost) {
         write_slice();
         report_progress(true);
+        log_sleepers();
       }
       return outcome(*code);
     }
@@ -446,6 +447,14 @@ void Run::write_slice() {
   });
   // A picture less does not undo a run.
   if (!failure.empty()) spdlog::warn("app {}", failure);
+}
+
+void Run::log_sleepers() const {
+  if (world_.settings().activity.interval == 0) return;
+  spdlog::info(
+      "app {} of {} grains sleep; falling asleep has taken {} J of motion since the start, the "
+      "wheel has done {} J of work",
+      world_.sleepers(), particles_, rounded(world_.taken_by_sleep()), rounded(ledger_.work()));
 }
 
 void Run::event(const std::string& kind, const CheckpointManifest& manifest) {

@@ -74,6 +74,7 @@ class Run {
   void add_track_row(std::int64_t step);
   bool report_progress(bool now);  // whether it could be written
   void write_slice();
+  void log_sleepers() const;
   void event(const std::string& kind, const CheckpointManifest& manifest);
 
   double time() const { return static_cast<double>(step_) * world_.settings().time_step; }

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "base/list_reach.hpp"
@@ -33,6 +34,12 @@ Surface preparation_surface(const Case& input) {
   return surface;
 }
 
+ActivityRule activity_rule(const Case& input) {
+  if (!input.has_wheel || input.activity.mode != "sleep") return {};
+  return {input.activity.speed * std::sqrt(input.gravity * SizeCurve(input.grains).mean()),
+          input.activity.imbalance, input.activity.interval};
+}
+
 }  // namespace
 
 World make_world(const Communicator& ranks, const Case& input, int threads) {
@@ -49,6 +56,7 @@ World make_world(const Communicator& ranks, const Case& input, int threads) {
   settings.time_step = time_step_of(input);
   settings.largest_radius = 0.5 * sizes.largest();
   settings.skin = list_skin(input.grains);
+  settings.activity = activity_rule(input);
   settings.law = input.contact.law;
   settings.rolling = input.contact.rolling;
   settings.grain = solid_of(input, input.grains.solid);

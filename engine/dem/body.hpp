@@ -28,6 +28,8 @@ struct Body {
   Surface surface;
   bool turns = false;  ///< may turn about its y axis
   BodyMotion motion;
+
+  bool is_at_rest() const { return motion.spin == 0.0 && norm2(motion.velocity) == 0.0; }
 };
 
 /// Turns vectors between a body's frame and the world.

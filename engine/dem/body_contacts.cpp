@@ -179,27 +179,45 @@ void BodyContacts::inherit(Part& part, std::size_t first, std::size_t last,
         take(t, old);
 }
 
+void BodyContacts::carry_over(Part& part, std::size_t first, std::size_t last) const {
+  const auto at = part.touches.at.begin();
+  const auto history = part.touches.history.begin();
+  const auto place = [&](std::size_t touch) {
+    return history + static_cast<std::ptrdiff_t>(touch * history_width_);
+  };
+  part.next.at.insert(part.next.at.end(), at + static_cast<std::ptrdiff_t>(first),
+                      at + static_cast<std::ptrdiff_t>(last));
+  part.next.history.insert(part.next.history.end(), place(first), place(last));
+}
+
 template <class Law, class Rolling>
 void BodyContacts::sweep(const Law& law, const Rolling& rolling,
                          const std::vector<Particle>& particles, const Body& body, double time_step,
-                         Part& part) const {
+                         Activity& activity, Part& part) const {
   using View = HistoryView<Law, Rolling>;
   const BodyFrame frame(body.motion);
   const Vec3 body_spin{0.0, body.motion.spin, 0.0};
   const std::vector<Touch>& touches = part.touches.at;
   std::vector<MeshTouch>& now = part.now;
+  const bool is_at_rest = body.is_at_rest();
   BodyLoad load;
   double largest = 0.0;
   std::size_t before = 0;
   const int* facets = part.facets.data();
   for (const auto& [i, facet_count] : part.close) {
     const Particle& p = particles[i];
-    now.clear();
-    body.search->touches_of(frame.to_body(p.position), p.radius, facets, facet_count, now);
+    const int* const near = facets;
     facets += facet_count;
     while (before < touches.size() && touches[before].particle < i) ++before;
     std::size_t after = before;
     while (after < touches.size() && touches[after].particle == i) ++after;
+    const bool is_frozen = is_at_rest && activity.is_on() && activity.is_asleep(i);
+    if (is_frozen) carry_over(part, before, after);
+    if (is_frozen && !activity.is_wanted(i)) continue;
+    now.clear();
+    body.search->touches_of(frame.to_body(p.position), p.radius, near, facet_count, now);
+    if (activity.is_on() && !is_at_rest && (after > before || !now.empty()))
+      activity.note_moving_touch(i);
     if (now.empty()) continue;
     inherit(part, before, after, *body.search);
     for (std::size_t t = 0; t < now.size(); ++t) {
@@ -229,6 +247,7 @@ void BodyContacts::sweep(const Law& law, const Rolling& rolling,
 
       const Vec3 on_grain = result.normal * at.normal + result.tangential;
       part.pushes.push_back({i, on_grain, reach * cross(result.tangential, at.normal) + turning});
+      if (is_frozen) continue;
       load.force_x.add(-on_grain.x);
       load.force_y.add(-on_grain.y);
       load.force_z.add(-on_grain.z);
@@ -237,6 +256,7 @@ void BodyContacts::sweep(const Law& law, const Rolling& rolling,
       largest = std::max(largest, at.overlap / p.radius);
       part.next.at.push_back({i, now[t].facet});
     }
+    if (is_frozen) continue;
     part.next.history.insert(part.next.history.end(), part.histories.begin(), part.histories.end());
   }
   part.load = load;
@@ -244,7 +264,7 @@ void BodyContacts::sweep(const Law& law, const Rolling& rolling,
 }
 
 double BodyContacts::sweep(const std::vector<Particle>& particles, const Body& body,
-                           double time_step, BodyLoad& load) {
+                           double time_step, Activity& activity, BodyLoad& load) {
   // The body has moved since the last step at the velocity it has now.
   travel_ +=
       (norm(body.motion.velocity) + std::abs(body.motion.spin) * body.search->rim()) * time_step;
@@ -258,9 +278,11 @@ double BodyContacts::sweep(const std::vector<Particle>& particles, const Body& b
     if (is_out) find_close(particles, body, part);
     part.pushes.clear();
     part.next.clear();
-    std::visit([&](const auto& law,
-                   const auto& rolling) { sweep(law, rolling, particles, body, time_step, part); },
-               law_, rolling_);
+    std::visit(
+        [&](const auto& law, const auto& rolling) {
+          sweep(law, rolling, particles, body, time_step, activity, part);
+        },
+        law_, rolling_);
     std::swap(part.touches, part.next);
   });
   double largest = 0.0;

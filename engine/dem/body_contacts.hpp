@@ -9,6 +9,7 @@
 #include "engine/core/particle.hpp"
 #include "engine/core/state_io.hpp"
 #include "engine/core/threads.hpp"
+#include "engine/dem/activity.hpp"
 #include "engine/dem/body.hpp"
 #include "engine/dem/history_view.hpp"
 #include "engine/dem/laws/table.hpp"
@@ -66,10 +67,11 @@ class BodyContacts {
     Vec3 moment;
   };
 
-  /// Evaluates all touches; adds the opposite to `load`.
+  /// Evaluates all touches; adds the opposite to `load`. Those of a sleeping grain with a body at
+  /// rest stay as they are and add nothing, even where the forces on that grain are wanted.
   /// @return largest overlap over grain radius [1]
   double sweep(const std::vector<Particle>& particles, const Body& body, double time_step,
-               BodyLoad& load);
+               Activity& activity, BodyLoad& load);
 
   /// Calls visit(push) for what the last sweep did to the grains first ... last-1, grain by grain.
   template <class Visit>
@@ -79,6 +81,9 @@ class BodyContacts {
            ++at)
         visit(*at);
   }
+
+  /// Owned grains that may touch before the next find_near.
+  const std::vector<std::uint32_t>& near() const { return near_; }
 
   std::size_t count() const;
   std::size_t history_width() const { return history_width_; }
@@ -156,7 +161,8 @@ class BodyContacts {
   void find_close(const std::vector<Particle>& particles, const Body& body, Part& part) const;
   template <class Law, class Rolling>
   void sweep(const Law& law, const Rolling& rolling, const std::vector<Particle>& particles,
-             const Body& body, double time_step, Part& part) const;
+             const Body& body, double time_step, Activity& activity, Part& part) const;
+  void carry_over(Part& part, std::size_t first, std::size_t last) const;
   /// Finds the histories of the touches `now` among those first ... last-1 of the same grain in the
   /// step before.
   void inherit(Part& part, std::size_t first, std::size_t last, const MeshSearch& search) const;

@@ -124,17 +124,19 @@ void PairContacts::note_speeds(double slow, double mean, double time_step) {
   }
 }
 
+double* PairContacts::result_of(std::size_t chunk, std::size_t slot) {
+  return &results_[(plan_.chunks[chunk].place + (slot - first_slot(chunk))) * kPairResult];
+}
+
 // Leaves in `results_` what the chunk's slots do.
 template <class Law, class Rolling>
 void PairContacts::evaluate(const Law& law, const Rolling& rolling, const double* grains,
                             std::size_t chunk, double time_step, Pack& largest) {
-  Block& block = blocks_[chunk / kChunksOfBlock];
-  PairSlots& slots = block.slots;
-  const std::size_t at = chunk % kChunksOfBlock;
-  const std::size_t end = block.chunk_end[at];
-  double* result = results_.data() + std::size_t{plan_.chunks[chunk].place} * kPairResult;
+  PairSlots& slots = blocks_[chunk / kChunksOfBlock].slots;
+  const std::size_t end = last_slot(chunk);
+  double* result = result_of(chunk, first_slot(chunk));
   std::array<PairPack, kBatch> packs;
-  for (std::size_t slot = at == 0 ? 0 : block.chunk_end[at - 1]; slot < end;) {
+  for (std::size_t slot = first_slot(chunk); slot < end;) {
     const std::size_t count = std::min(kBatch, (end - slot) / kLanes);
     for (std::size_t k = 0; k < count; ++k) {
       fetch_ahead(grains, slots, slot + k * kLanes + kAhead);
@@ -151,10 +153,44 @@ void PairContacts::evaluate(const Law& law, const Rolling& rolling, const double
   }
 }
 
+// The same where some grains sleep or may fall asleep. What two that sleep remember stays as it is.
+template <class Law, class Rolling>
+void PairContacts::evaluate_watched(const Law& law, const Rolling& rolling, const double* grains,
+                                    std::size_t chunk, double time_step, Activity& activity,
+                                    Desk& desk) {
+  PairSlots& slots = blocks_[chunk / kChunksOfBlock].slots;
+  const std::size_t width = history_width();
+  desk.held.resize(width * kLanes);
+  for (const auto& [slot, frozen, is_awake] : watched_[chunk]) {
+    if (!is_awake && !activity.may_wake()) continue;
+    PairPack pack;
+    pack.approach(grains, slots, slot);
+    double* const histories = slots.histories(slot);
+    if (frozen != 0) std::copy_n(histories, width * kLanes, desk.held.begin());
+    pack.act(law, rolling, time_step, histories, result_of(chunk, slot));
+    for (std::size_t lane = 0; lane < kLanes && frozen != 0; ++lane)
+      for (std::size_t c = 0; c < width && (frozen >> lane & 1u) != 0; ++c)
+        histories[c * kLanes + lane] = desk.held[c * kLanes + lane];
+    const unsigned before = slots.touching(slot);
+    const unsigned now = pack.touches.to_unsigned();
+    slots.touching(slot) = static_cast<std::uint8_t>(now);
+    for (unsigned bits = (before | now) & ~unsigned{frozen}; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+      activity.note_touch(slots.lower(slot + lane), slots.higher(slot + lane));
+      if ((now >> lane & 1u) != 0)
+        desk.largest = std::max(desk.largest, pack.at.overlap[lane] / pack.smaller[lane]);
+    }
+  }
+}
+
 template <class Law, class Rolling>
 double PairContacts::sweep(const Law& law, const Rolling& rolling,
                            const std::vector<Particle>& particles, double time_step,
-                           const Finish& finish, const std::function<void()>& fetch_ghosts) {
+                           const Finish& finish, const std::function<void()>& fetch_ghosts,
+                           Activity& activity) {
+  const auto light_of = [&](std::size_t chunk) {
+    return activity.is_on() ? lights_[chunk] : Light::kBright;
+  };
   const double* const grains = particles.empty() ? nullptr : &particles[0].position.x;
   const auto first = std::find_if(plan_.chunks.begin(), plan_.chunks.end(),
                                   [](const SweepPlan::Chunk& chunk) { return chunk.has_ghosts; });
@@ -163,19 +199,26 @@ double PairContacts::sweep(const Law& law, const Rolling& rolling,
   if (!may_wait) fetch_ghosts();
   threads_.run([&](std::size_t share) {
     Pack largest;
+    desks_[share].largest = 0.0;
     for (std::size_t c = plan_.shares[share].first; c < plan_.shares[share].last; ++c) {
       if (may_wait && c == first_with_ghosts) fetch_ghosts();
-      evaluate(law, rolling, grains, c, time_step, largest);
-      if (!plan_.chunks[c].is_late) hand_over(share, c, finish);
+      const Light light = light_of(c);
+      if (light == Light::kDark) continue;
+      if (light == Light::kMixed || activity.is_look()) {
+        evaluate_watched(law, rolling, grains, c, time_step, activity, desks_[share]);
+      } else {
+        evaluate(law, rolling, grains, c, time_step, largest);
+      }
+      if (!plan_.chunks[c].is_late) hand_over(share, c, finish, activity);
     }
-    desks_[share].largest = 0.0;
     for (std::size_t lane = 0; lane < kLanes; ++lane)
       desks_[share].largest = std::max(desks_[share].largest, largest[lane]);
   });
   if (threads_.count() > 1)
     threads_.run([&](std::size_t share) {
       for (std::size_t c = plan_.shares[share].first; c < plan_.shares[share].last; ++c)
-        if (plan_.chunks[c].is_late) hand_over(share, c, finish);
+        if (plan_.chunks[c].is_late && light_of(c) != Light::kDark)
+          hand_over(share, c, finish, activity);
     });
   if (may_wait && first_with_ghosts == plan_.chunks.size()) fetch_ghosts();
   double result = 0.0;
@@ -184,21 +227,25 @@ double PairContacts::sweep(const Law& law, const Rolling& rolling,
 }
 
 // All slots that act on the chunk's grains have been evaluated by now.
-void PairContacts::hand_over(std::size_t share, std::size_t chunk, const Finish& finish) {
+void PairContacts::hand_over(std::size_t share, std::size_t chunk, const Finish& finish,
+                             const Activity& activity) {
   Desk& desk = desks_[share];
   const std::size_t first = chunk * kChunk;
   const std::size_t last = std::min(first + kChunk, owned_);
-  add_up(first, last, desk.forces.data(), desk.moments.data());
+  const bool some = activity.is_on() && lights_[chunk] == Light::kMixed;
+  add_up(first, last, desk.forces.data(), desk.moments.data(), some ? &activity : nullptr);
   finish({share, first, last, desk.forces.data(), desk.moments.data()});
 }
 
 // Grains with equally many slots follow one another, which the processor foresees.
-void PairContacts::add_up(std::size_t first, std::size_t last, double* forces,
-                          double* moments) const {
+// @param wanted of which grains; null: of all
+void PairContacts::add_up(std::size_t first, std::size_t last, double* forces, double* moments,
+                          const Activity* wanted) const {
   // Turns the force on the lower id into that on the higher: only the sign bits differ.
   alignas(32) static constexpr double kSign[8] = {0.0, 0.0, 0.0, 0.0, -0.0, -0.0, -0.0, -0.0};
   for (std::size_t k = first; k < last; ++k) {
     const std::size_t local = by_count_[k];
+    if (wanted != nullptr && !wanted->is_wanted(first + local)) continue;
     Quad sum{};
     Quad turn{};
     for (std::uint32_t at = side_start_[first + local]; at < side_start_[first + local + 1]; ++at) {
@@ -214,18 +261,18 @@ void PairContacts::add_up(std::size_t first, std::size_t last, double* forces,
 }
 
 double PairContacts::sweep(const std::vector<Particle>& particles, double time_step,
-                           const Finish& finish, const std::function<void()>& fetch_ghosts) {
-  // Two grains may have come closer by twice the way of one; a hair more for rounding.
-  const bool needs_slots = 2.0 * travel_ * (1.0 + 1e-9) >= gap_;
-  if (needs_slots) {
+                           const Finish& finish, const std::function<void()>& fetch_ghosts,
+                           Activity& activity) {
+  const bool is_out = needs_slots();
+  if (is_out) {
     fetch_ghosts();
     refresh(particles);
   }
   const std::function<void()> nothing = [] {};
   return std::visit(
       [&](const auto& law, const auto& rolling) {
-        return sweep(law, rolling, particles, time_step, finish,
-                     needs_slots ? nothing : fetch_ghosts);
+        return sweep(law, rolling, particles, time_step, finish, is_out ? nothing : fetch_ghosts,
+                     activity);
       },
       law_, rolling_);
 }

@@ -10,6 +10,7 @@
 #include "engine/core/particle.hpp"
 #include "engine/core/state_io.hpp"
 #include "engine/core/threads.hpp"
+#include "engine/dem/activity.hpp"
 #include "engine/dem/history_view.hpp"
 #include "engine/dem/laws/table.hpp"
 #include "engine/dem/pair_histories.hpp"
@@ -75,12 +76,20 @@ class PairContacts {
   /// moved. Called by several threads at a time, in no particular order.
   using Finish = std::function<void(const Ready&)>;
 
-  /// Evaluates all contacts and hands over all owned grains.
+  /// Before a sweep with an activity that is on: brings the slots up to date and finds which grains
+  /// are lit and which slots are wanted. Ghosts must have come.
+  /// @param struck grains that may touch a body that moves
+  /// @param is_new whether they, or those who sleep, are others than at the last time
+  void watch(const std::vector<Particle>& particles, const std::vector<std::uint32_t>& struck,
+             bool is_new, Activity& activity);
+
+  /// Evaluates all contacts and hands over all owned grains. With an activity that is on: only what
+  /// watch() found, and only the chunks with a grain that is lit.
   /// @param fetch_ghosts called once, on the first thread, before a ghost is looked at: as late as
   ///                     the order of grains allows, with one thread
   /// @return largest overlap over the smaller radius of the pair [1]
   double sweep(const std::vector<Particle>& particles, double time_step, const Finish& finish,
-               const std::function<void()>& fetch_ghosts);
+               const std::function<void()>& fetch_ghosts, Activity& activity);
 
   /// Whether a grain was much faster than the mean when the slots were made.
   bool is_fast(std::size_t grain) const { return is_fast_[grain] != 0; }
@@ -126,9 +135,28 @@ class PairContacts {
     LineVector<double> forces;  // of the chunk that is being added up
     LineVector<double> moments;
     double largest = 0.0;
+    std::vector<double> held;  // histories of a pack, of which some stay as they are
   };
+  // A pack of which some slots are wanted; bits are lanes.
+  struct WatchedPack {
+    std::uint32_t slot;   // of its block
+    std::uint8_t frozen;  // both grains sleep
+    bool is_awake;        // one of the grains is; else wanted only when grains may wake
+  };
+  // What there is to do for a chunk: nothing, the packs that are watched, all.
+  enum class Light : std::uint8_t { kDark, kMixed, kBright };
 
   std::size_t last_of(std::size_t block) const;
+  // Slots of a chunk in its block.
+  std::size_t first_slot(std::size_t chunk) const {
+    const std::size_t at = chunk % kChunksOfBlock;
+    return at == 0 ? 0 : blocks_[chunk / kChunksOfBlock].chunk_end[at - 1];
+  }
+  std::size_t last_slot(std::size_t chunk) const {
+    return blocks_[chunk / kChunksOfBlock].chunk_end[chunk % kChunksOfBlock];
+  }
+  // Two grains may have come closer by twice the way of one; a hair more for rounding.
+  bool needs_slots() const { return 2.0 * travel_ * (1.0 + 1e-9) >= gap_; }
   std::pair<std::ptrdiff_t, std::ptrdiff_t> grains_of(std::size_t share) const;
   const double* kept(const std::vector<Particle>& particles, std::size_t i, std::size_t j) const;
   void start_plan();
@@ -149,12 +177,20 @@ class PairContacts {
 
   template <class Law, class Rolling>
   double sweep(const Law& law, const Rolling& rolling, const std::vector<Particle>& particles,
-               double time_step, const Finish& finish, const std::function<void()>& fetch_ghosts);
+               double time_step, const Finish& finish, const std::function<void()>& fetch_ghosts,
+               Activity& activity);
+  void watch_chunk(std::size_t chunk, const Activity& activity);
+  template <class Law, class Rolling>
+  void evaluate_watched(const Law& law, const Rolling& rolling, const double* grains,
+                        std::size_t chunk, double time_step, Activity& activity, Desk& desk);
+  double* result_of(std::size_t chunk, std::size_t slot);
   template <class Law, class Rolling>
   void evaluate(const Law& law, const Rolling& rolling, const double* grains, std::size_t chunk,
                 double time_step, Pack& largest);
-  void hand_over(std::size_t share, std::size_t chunk, const Finish& finish);
-  void add_up(std::size_t first, std::size_t last, double* forces, double* moments) const;
+  void hand_over(std::size_t share, std::size_t chunk, const Finish& finish,
+                 const Activity& activity);
+  void add_up(std::size_t first, std::size_t last, double* forces, double* moments,
+              const Activity* wanted) const;
 
   ContactLaw law_;
   RollingLaw rolling_;
@@ -174,6 +210,10 @@ class PairContacts {
   double slow_speed_ = 0.0;
   double fast_speed_ = 0.0;  // from here on a grain is fast
   double time_step_ = 0.0;
+  // Of each chunk, with an activity that is on:
+  std::vector<Light> lights_;
+  std::vector<std::vector<WatchedPack>> watched_;
+  bool has_new_slots_ = true;
   LineVector<double> results_;  // what each slot does in this step, where the plan says
 };
 

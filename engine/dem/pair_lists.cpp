@@ -155,6 +155,7 @@ void PairContacts::refresh(const std::vector<Particle>& particles, std::size_t b
 
 // Finds out who evaluates what and lists each grain's slots by partner id.
 void PairContacts::plan_sweep(const std::vector<Particle>& particles) {
+  has_new_slots_ = true;
   plan_.make(threads_.count());
   if (results_.size() < plan_.results * kPairResult) results_.resize(plan_.results * kPairResult);
   side_start_.resize(owned_ + 1);

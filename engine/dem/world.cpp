@@ -43,6 +43,7 @@ World::World(const Communicator& ranks, const WorldSettings& settings)
       threads_(settings.threads),
       boxes_(first_cuts(ranks, settings)),
       halo_(ranks),
+      activity_(settings.activity, settings.gravity),
       pairs_(make_contact_law(settings.law, settings.grain, settings.grain, settings.grain_grain),
              make_rolling_law(settings.rolling, settings.grain_grain), threads_) {
   GROUSER_CHECK(settings.time_step > 0.0 && settings.largest_radius > 0.0 && settings.skin > 0.0);
@@ -93,6 +94,7 @@ void World::reserve(std::size_t count) {
 }
 
 World::StepResult World::step(double request) {
+  bool are_new = must_rebuild_;
   if (must_rebuild_) {
     rebuild();
   } else {
@@ -107,34 +109,40 @@ World::StepResult World::step(double request) {
     for (std::size_t b = 0; b < bodies_.size(); ++b)
       body_contacts_[b].find_near(particles_, owned_, bodies_[b]);
     near_moved_ = 0.0;
+    are_new = true;
   }
 
   if (forces_ != nullptr) forces_->begin_step(particles_, owned_);
-
-  Communicator::StepTotals totals;
-  double overlap = 0.0;
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    BodyLoad& load = loads_[b];
-    load = BodyLoad{};
-    overlap = std::max(overlap,
-                       body_contacts_[b].sweep(particles_, bodies_[b], settings_.time_step, load));
-    totals.sums.insert(totals.sums.end(), {load.force_x, load.force_y, load.force_z,
-                                           load.force_moment_y, load.couple_y});
-  }
-  std::vector<Motion> motions(threads_.count());
-  const auto move_on = [&](const PairContacts::Ready& ready) { move(ready, motions[ready.share]); };
   double waited = 0.0;
   const auto fetch_ghosts = [&] {
     waited -= thread_seconds();
     halo_.finish();
     waited += thread_seconds();
   };
-  overlap = std::max(overlap, pairs_.sweep(particles_, settings_.time_step, move_on, fetch_ghosts));
+  if (activity_.is_on()) {
+    fetch_ghosts();  // who sleeps there is asked before anything else
+    watch(are_new);
+  }
+  Communicator::StepTotals totals;
+  double overlap = 0.0;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    BodyLoad& load = loads_[b];
+    load = BodyLoad{};
+    overlap = std::max(overlap, body_contacts_[b].sweep(particles_, bodies_[b], settings_.time_step,
+                                                        activity_, load));
+    totals.sums.insert(totals.sums.end(), {load.force_x, load.force_y, load.force_z,
+                                           load.force_moment_y, load.couple_y});
+  }
+  std::vector<Motion> motions(threads_.count());
+  const auto move_on = [&](const PairContacts::Ready& ready) { move(ready, motions[ready.share]); };
+  overlap = std::max(
+      overlap, pairs_.sweep(particles_, settings_.time_step, move_on, fetch_ghosts, activity_));
   Motion motion;
   for (const Motion& one : motions) motion.add(one);
   busy_ += thread_seconds() - begun - waited;
   ++busy_steps_;
   totals.sums.emplace_back().add(busy_);
+  totals.sums.push_back(motion.change.taken);
   totals.sums.emplace_back().add(std::isfinite(motion.sum) ? motion.sum : 0.0);
   totals.maxima = {std::sqrt(motion.fastest2),
                    std::sqrt(motion.slow2),
@@ -146,6 +154,9 @@ World::StepResult World::step(double request) {
   for (std::size_t b = 0; b < bodies_.size(); ++b)
     loads_[b] = {totals.sums[5 * b], totals.sums[5 * b + 1], totals.sums[5 * b + 2],
                  totals.sums[5 * b + 3], totals.sums[5 * b + 4]};
+
+  if (activity_.is_on())
+    activity_.end_step(motion.change.is_any, totals.sums[5 * bodies_.size() + 1].value());
 
   StepResult result;
   result.max_overlap = totals.maxima[2];
@@ -168,6 +179,19 @@ World::StepResult World::step(double request) {
   return result;
 }
 
+// Lists of a body change only when all do, and those of bodies that move when one starts or stops.
+void World::watch(bool are_new) {
+  std::vector<std::uint32_t> struck;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    if (bodies_[b].is_at_rest()) continue;
+    const std::vector<std::uint32_t>& near = body_contacts_[b].near();
+    struck.insert(struck.end(), near.begin(), near.end());
+  }
+  activity_.begin_step(particles_, owned_, are_new);
+  pairs_.watch(particles_, struck, are_new || struck.size() != struck_, activity_);
+  struck_ = struck.size();
+}
+
 void World::move(const PairContacts::Ready& ready, Motion& motion) {
   for (const BodyContacts& contacts : body_contacts_)
     contacts.each_push(ready.first, ready.last, [&](const BodyContacts::Push& push) {
@@ -183,6 +207,8 @@ void World::move(const PairContacts::Ready& ready, Motion& motion) {
   for (std::size_t i = ready.first; i < ready.last; ++i, forces += 4, moments += 4) {
     Particle& p = particles_[i];
     const GrainLoad load{{forces[0], forces[1], forces[2]}, {moments[0], moments[1], moments[2]}};
+    if (activity_.is_on() && activity_.rests(i, p, load.force, load.moment, motion.change))
+      continue;
     const GrainGain gain =
         forces_ == nullptr ? plain_gain(p, load, dt, settings_.gravity) : forces_->gain(p, load);
     p.velocity += gain.velocity;
@@ -206,6 +232,7 @@ void World::Motion::add(const Motion& other) {
   slow2 = std::max(slow2, other.slow2);
   is_lost |= other.is_lost;
   sum += other.sum;
+  change.add(other.change);
 }
 
 double World::displacement() const {
@@ -220,6 +247,12 @@ std::int64_t World::contacts() const {
   for (const BodyContacts& contacts : body_contacts_)
     local += static_cast<std::int64_t>(contacts.count());
   return ranks_.sum(local);
+}
+
+std::int64_t World::sleepers() const {
+  return ranks_.sum(std::count_if(particles_.begin(),
+                                  particles_.begin() + static_cast<std::ptrdiff_t>(owned_),
+                                  [](const Particle& p) { return is_asleep(p); }));
 }
 
 std::int64_t World::particle_count() const { return ranks_.sum(static_cast<std::int64_t>(owned_)); }

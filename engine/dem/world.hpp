@@ -11,6 +11,7 @@
 #include "engine/core/decomposition.hpp"
 #include "engine/core/halo.hpp"
 #include "engine/core/state_io.hpp"
+#include "engine/dem/activity.hpp"
 #include "engine/dem/body.hpp"
 #include "engine/dem/body_contacts.hpp"
 #include "engine/dem/grain_forces.hpp"
@@ -36,6 +37,7 @@ struct WorldSettings {
   std::string rolling = "none";
   Solid grain;
   Surface grain_grain;
+  ActivityRule activity;  ///< by default nobody sleeps
 };
 
 /// What went wrong in a step, agreed by all ranks; the worst wins.
@@ -131,6 +133,9 @@ class World : public Stateful {
   double kinetic_energy() const;
   std::int64_t contacts() const;        ///< touching contacts, pairs and bodies. Collective.
   std::int64_t particle_count() const;  ///< Collective.
+  std::int64_t sleepers() const;        ///< grains that sleep. Collective.
+  /// Kinetic energy that grains had when they fell asleep, since the start of the run [J]. Local.
+  double taken_by_sleep() const { return activity_.taken(); }
 
   /// Grains of this rank.
   std::size_t owned() const { return owned_; }
@@ -169,6 +174,7 @@ class World : public Stateful {
     double slow2 = 0.0;     // of those that are not fast
     bool is_lost = false;   // a grain has left the region, or is nowhere
     double sum = 0.0;       // of |vx| + |vy| + |vz|
+    Activity::Change change;
     void add(const Motion& other);
   };
 
@@ -186,6 +192,7 @@ class World : public Stateful {
   void put_in_order(std::vector<std::uint32_t> number);
   void move(const PairContacts::Ready& ready, Motion& motion);
   double displacement() const;
+  void watch(bool are_new);
   std::optional<std::uint32_t> loaded_grain(std::int64_t id) const;
   void load_particles(StateTable rows);
   void load_pairs(const StateTable& rows);
@@ -201,6 +208,8 @@ class World : public Stateful {
   std::vector<Particle> particles_;  // owned, then ghosts
   std::vector<Vec3> origins_;
   std::size_t owned_ = 0;
+  Activity activity_;
+  std::size_t struck_ = 0;  // grains that a moving body may touch
   PairContacts pairs_;
   GrainForces* forces_ = nullptr;
   std::vector<Body> bodies_;

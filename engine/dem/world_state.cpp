@@ -101,6 +101,7 @@ void World::save_state(State& state, const StatePiece& piece) const {
   }
   for (StateTable* table : {&grains, &contacts, &touches, &bodies})
     state.push_back(std::move(*table));
+  activity_.save_state(ranks_, state, piece);
 }
 
 void World::begin_load() {
@@ -120,6 +121,7 @@ void World::load_rows(const StateTable& rows) {
   if (rows.name == "contacts") load_pairs(rows);
   if (rows.name == "body_contacts") load_touches(rows);
   if (rows.name == "bodies") load_bodies(rows);
+  activity_.load_rows(ranks_, rows);
 }
 
 void World::end_load() {
