@@ -46,6 +46,9 @@ double rim_speed(const WheelCase& wheel) {
   return wheel.forward_speed;  // of a rolling wheel; what a torque does to it is not known before
 }
 
+// Three years where a run does a hundred thousand in a second, which few do.
+constexpr double kMostSteps = 1e13;
+
 // The case itself and the bed it starts from.
 std::vector<Case> with_bed(const Case& input) {
   if (!input.has_wheel) return {input};
@@ -168,6 +171,13 @@ void describe_time_step(FieldVisitor& v, const Case& input) {
            one.has_wheel ? "look at the units of speeds, density and young_modulus"
                          : "the speed is that of free fall through the filling; look at the "
                            "units of gravity, box, density and young_modulus");
+    const bool settles = !one.has_wheel && !one.has_placed;
+    const double time = settles ? one.bed.settle_limit : run_duration(one);
+    const double steps = time / time_step_of(one);
+    v.rule("numerics", !is_number || steps <= kMostSteps,
+           "comes to " + rounded(steps) + " time steps of " + rounded(time_step_of(one)) + " s",
+           "over " + rounded(kMostSteps) + " no machine ends; look at the units of diameters, " +
+               "density, young_modulus, travel and time_step");
   }
 }
 

@@ -29,12 +29,19 @@ std::string not_a_number(const World& world, const Case& input) {
          ", may do that: " + kShorterStep;
 }
 
-std::string lost(const World& world) {
+std::string lost(const World& world, const Case& input) {
   const World::Culprit grain = world.culprit(Fault::kLostParticle);
+  const double way = norm(grain.velocity) * time_step_of(input);
+  // So fast that it does not matter where it went.
+  const std::string cause =
+      way > 1.0
+          ? "; " + rounded(way) +
+                " m in one step: find what throws it, such as a torque too large "
+                "for the inertia of the wheel, or shorten the time step"
+          : "; where it went over a wall use a higher box.depth or a slower wheel, where it went "
+            "through one a shorter time step or stiffer box.solid";
   return "a grain has left the box: grain " + std::to_string(grain.id) + " is at " +
-         text_of(grain.position, "m") + " with " + text_of(grain.velocity, "m/s") +
-         "; where it went over a wall use a higher box.depth or a slower wheel, where it went "
-         "through one a shorter time step or stiffer box.solid";
+         text_of(grain.position, "m") + " with " + text_of(grain.velocity, "m/s") + cause;
 }
 
 std::string too_deep(const World& world, const World::StepResult& result, const Case& input) {
@@ -62,7 +69,7 @@ std::string too_fast(const World::StepResult& result, double radius, const Case&
 std::optional<std::string> breakdown_of(const World& world, const World::StepResult& result,
                                         const Case& input) {
   if (result.fault == Fault::kNotANumber) return not_a_number(world, input);
-  if (result.fault == Fault::kLostParticle) return lost(world);
+  if (result.fault == Fault::kLostParticle) return lost(world, input);
   if (result.max_overlap > input.numerics.max_overlap) return too_deep(world, result, input);
   if (input.grains.size_curve.empty()) return std::nullopt;
   const double radius =

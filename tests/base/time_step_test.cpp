@@ -190,6 +190,18 @@ TEST(Case, MoreGrainsThanAnyMachineHoldsAreRefused) {
   EXPECT_EQ(problems_of(input), "");
 }
 
+TEST(Case, MoreStepsThanAnyMachineEndsAreRefused) {
+  Case input = wheel_case();
+  input.box.solid.young_modulus = input.grains.solid.young_modulus = 1e36;
+  input.wheel.solid.young_modulus = 1e36;
+  EXPECT_NE(problems_of(input).find("numerics: comes to "), std::string::npos)
+      << problems_of(input);
+  // The hardest of real solids, diamond, is far from it.
+  input.box.solid.young_modulus = input.grains.solid.young_modulus = 1.2e12;
+  input.wheel.solid.young_modulus = 1.2e12;
+  EXPECT_EQ(problems_of(input), "");
+}
+
 TEST(StiffnessScale, ActsAsLowerYoungsModuliOfAllSolids) {
   Case scaled = wheel_case();
   scaled.box.solid.young_modulus = 1e9;

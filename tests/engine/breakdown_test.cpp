@@ -55,6 +55,13 @@ TEST(Breakdown, AGrainThroughAWallIsNamedWithPlaceAndSpeed) {
                 "a higher box.depth", "shorter time step"});
 }
 
+TEST(Breakdown, AGrainThatIsThrownBeyondReasonIsNotBlamedOnWalls) {
+  Particle thrown = sphere(1, 4e-3, {0.05, 0.05, 0.2});
+  thrown.velocity.x = 1e12;
+  expect_parts(broken_by({kCalm, thrown}),
+               {"a grain has left the box: grain 1 ", "5e+06 m in one step: find what throws it"});
+}
+
 TEST(Breakdown, AGrainThatWouldPassASurfaceUnseenIsTooFast) {
   Particle fast = sphere(1, 4e-3, {0.05, 0.05, 0.2});
   fast.velocity.x = 610.0;  // 3.05 mm in a step of 5 us; the smallest radius is 3 mm
