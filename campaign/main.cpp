@@ -20,8 +20,8 @@ namespace {
 constexpr std::array kVerbs{add_init,    add_validate,   add_expand,    add_plan,     add_submit,
                             add_tick,    add_status,     add_show,      add_query,    add_logs,
                             add_stop,    add_cancel,     add_resume,    add_report,   add_fsck,
-                            add_rebuild, add_schema,     add_recording, add_diagnose, add_doctor,
-                            add_serve,   add_completion, add_manual};
+                            add_rebuild, add_schema,     add_recording, add_diagnose, add_blind,
+                            add_doctor,  add_serve,      add_completion, add_manual};
 
 int parse(CLI::App& app, int argc, char** argv, int& code) {
   try {

@@ -30,6 +30,7 @@ diagnosis/models     base diagnosis/recordings
 diagnosis/hypotheses base diagnosis/recordings diagnosis/models
 diagnosis/inference  base diagnosis/recordings diagnosis/models diagnosis/hypotheses
 diagnosis/report     base campaign/report diagnosis/recordings diagnosis/models diagnosis/hypotheses diagnosis/inference
+diagnosis/blind      base diagnosis/recordings diagnosis/models diagnosis/hypotheses diagnosis/inference diagnosis/report
 diagnosis/cli        base campaign diagnosis
 bench            base engine
 tests            base schedulers engine campaign diagnosis

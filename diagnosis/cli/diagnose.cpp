@@ -11,6 +11,7 @@
 #include "diagnosis/hypotheses/table.hpp"
 #include "diagnosis/inference/diagnose.hpp"
 #include "diagnosis/report/json.hpp"
+#include "diagnosis/report/page.hpp"
 
 namespace grouser {
 namespace {
@@ -53,8 +54,10 @@ int run(const Options& options) {
                                            : fs::path(options.out);
   fs::create_directories(out);
   write_atomic(out / "diagnosis.json", to_json(d));
+  write_atomic(out / "diagnosis.html", page_html(d, recording));
   print(d);
-  std::cout << "written: " << (out / "diagnosis.json").string() << "\n";
+  std::cout << "written: " << (out / "diagnosis.json").string() << ", "
+            << (out / "diagnosis.html").string() << "\n";
   return exit_codes::kOk;
 }
 

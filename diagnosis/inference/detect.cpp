@@ -115,6 +115,7 @@ Detection detect(const Study& study, const Fit& fit, int draws, unsigned seed) {
   const auto at = largest.begin() + static_cast<std::ptrdiff_t>(0.99 * double(largest.size()));
   std::nth_element(largest.begin(), at, largest.end());
   found.threshold = *at;
+  found.draws = std::move(largest);
   std::sort(found.cells.begin(), found.cells.end(),
             [](const ScanCell& a, const ScanCell& b) { return std::abs(a.z) > std::abs(b.z); });
   return found;

@@ -23,6 +23,7 @@ struct Detection {
   double p_stress = 1.0;        ///< parameters pushed from their priors alone
   double p = 1.0;               ///< family-wise: three times the least, at most 1
   double threshold = 0.0;       ///< |z| that the scan passes once in a hundred
+  std::vector<double> draws;    ///< the largest |z| of every draw of the null
   std::vector<ScanCell> cells;  ///< all windows, the largest |z| first
 
   bool is_mismatch(double level) const { return p < level; }

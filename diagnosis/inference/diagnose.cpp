@@ -18,9 +18,18 @@ using Eigen::Index;
 
 constexpr double kLevel = 0.01;       // of the baseline's detection
 constexpr double kCheckLevel = 2e-3;  // below, a cause does not explain all
-constexpr double kTemper = 1.0;       // power of the evidence; 1 as no calibration says otherwise
+/// ln of the odds to the unknown force that a pair needs: many pairs are tried, and two curves
+/// together bend almost anywhere.
+const double kPairOdds = std::log(1000.0);
+const double kPairOverSingle = std::log(20.0);  // the same to the best single cause
+constexpr double kDoubt = 0.2;       // of the check, below which a second cause is looked for
+constexpr double kRefuted = 8.0;     // ln of the predictive density that held-out data may cost
+constexpr double kRemainder = 0.01;  // of the misfit, that a cause may leave when nothing is better
+constexpr double kRival = 0.01;      // odds to the best from which on another cause is a rival
+constexpr double kTemper = 1.0;      // power of the evidence; 1 as no calibration says otherwise
 constexpr int kDraws = 2000;
-constexpr std::size_t kPairSeeds = 4;  // best single causes that are tried with every other
+constexpr std::size_t kPairSeeds = 6;  // best single causes that are tried with every other
+constexpr std::size_t kPairFits = 8;   // pairs that are fitted
 
 /// Smallest set with 95 %, the most probable first.
 std::vector<std::string> set_of(const std::vector<Candidate>& candidates) {
@@ -38,17 +47,26 @@ bool is_single(const Candidate& c) {
   return c.family != Family::kBaseline && c.family != Family::kUnknown;
 }
 
-/// Adds every pair of the best single causes with any other that could be both.
+/// Adds pairs of the best single causes with any other: all are guessed, the likeliest fitted.
 void add_pairs(const Study& study, std::vector<Candidate>& candidates) {
   std::vector<Candidate> singles;
   for (const Candidate& c : candidates)
     if (is_single(c)) singles.push_back(c);
-  std::vector<Candidate> pairs;
+  struct Guess {
+    double evidence;
+    std::size_t a, b;
+  };
+  std::vector<Guess> guesses;
   for (std::size_t a = 0; a < std::min(kPairSeeds, singles.size()); ++a)
     for (std::size_t b = a + 1; b < singles.size(); ++b)
-      pairs.push_back(combine(study, singles[a], singles[b]));
-  for (Candidate& pair : pairs) {
-    pair.log_prior = singles[0].log_prior - std::log(static_cast<double>(pairs.size()));
+      guesses.push_back({guess_together(study, singles[a], singles[b]), a, b});
+  std::sort(guesses.begin(), guesses.end(),
+            [](const Guess& x, const Guess& y) { return x.evidence > y.evidence; });
+  const double log_prior = singles[0].log_prior - std::log(static_cast<double>(guesses.size()));
+  guesses.resize(std::min(kPairFits, guesses.size()));
+  for (const Guess& guess : guesses) {
+    Candidate pair = combine(study, singles[guess.a], singles[guess.b]);
+    pair.log_prior = log_prior;
     candidates.push_back(std::move(pair));
   }
   weigh(candidates, kTemper);
@@ -142,8 +160,7 @@ void check_amplitude(const SeriesRecording& recording, const Baseline& baseline,
     Coordinates coordinates = one.with(*best.hypothesis, -1);
     // The amplitude is asked of the data, not of the prior.
     coordinates.back().sd *= 4.0;
-    const Fit now =
-        fit(one, coordinates, Eigen::VectorXd::Zero(static_cast<Index>(coordinates.size())), 12);
+    const Fit now = fit(one, coordinates, one.start(coordinates), 12);
     d.amplitudes.push_back(now.value(coordinates.size() - 1));
     d.amplitude_errors.push_back(now.deviation(coordinates.size() - 1));
     const double weight = 1.0 / std::pow(d.amplitude_errors.back(), 2);
@@ -168,36 +185,126 @@ bool has_wrong_size(const Study& study, const Candidate& c) {
          c.fit.value(own) - 2.0 * c.fit.deviation(own) > 2.5;
 }
 
-/// The answer from weighed candidates; tries pairs when one cause is not enough.
+/// Part of the baseline's misfit that a cause leaves, beyond what noise makes.
+double remainder(const Study& study, const Fit& baseline, const Fit& fit) {
+  const auto noise = static_cast<double>(study.rows());
+  const double before = baseline.residual.squaredNorm() + baseline.p.squaredNorm() - noise;
+  const double after = fit.residual.squaredNorm() + fit.p.squaredNorm() - noise;
+  return before > 0.0 ? std::max(0.0, after) / before : 1.0;
+}
+
+/// ln odds of the best candidate to the unknown force.
+double beats_unknown(const std::vector<Candidate>& candidates) {
+  for (const Candidate& c : candidates)
+    if (c.family == Family::kUnknown)
+      return candidates[0].log_prior + candidates[0].log_evidence - c.log_prior - c.log_evidence;
+  return INFINITY;
+}
+
+/// Whether the best candidate is a cause that leaves nothing that noise would not.
+bool is_enough(const Study& study, Diagnosis& d) {
+  if (d.candidates[0].family == Family::kUnknown) return false;
+  d.check = detect(study, d.candidates[0].fit, kDraws, 2);
+  return !d.check.is_mismatch(kCheckLevel);
+}
+
+void say_unknown(Diagnosis& d) {
+  d.word = Word::kNoneOfTheKnown;
+  d.cause = "unknown";
+  d.family = Family::kUnknown;
+}
+
+/// Tries pairs. @return whether one is so much better than what was there that it is the answer's
+/// first candidate now; else the candidates are as before.
+bool is_pair_better(const Study& study, Diagnosis& d) {
+  const std::vector<Candidate> before = d.candidates;
+  const std::string single = before[0].id;
+  add_pairs(study, d.candidates);
+  const double odds = std::log(d.candidates[0].probability) - std::log([&] {
+                        for (const Candidate& c : d.candidates)
+                          if (c.id == single) return std::max(1e-300, c.probability);
+                        return 1e-300;
+                      }());
+  if (d.candidates[0].id.find('+') != std::string::npos && odds > kPairOverSingle &&
+      beats_unknown(d.candidates) > kPairOdds && is_enough(study, d))
+    return true;
+  d.candidates = before;
+  return false;
+}
+
+/// Whether the single best leaves so little, of so much, that its own theory may be that wrong.
+bool is_nearly_enough(const Study& study, Diagnosis& d) {
+  if (!is_single(d.candidates[0])) return false;
+  const auto none = std::find_if(d.candidates.begin(), d.candidates.end(),
+                                 [](const Candidate& c) { return c.id == "baseline"; });
+  const double left = remainder(study, none->fit, d.candidates[0].fit);
+  if (left > kRemainder) return false;
+  d.flags.push_back("it leaves " + rounded(100.0 * left) +
+                    " % of the misfit, more than noise does");
+  return true;
+}
+
+/// The answer from weighed candidates; tries pairs when one cause is hardly enough.
 void decide(const Study& study, Diagnosis& d) {
   d.word = Word::kNoMismatch;
   if (!d.detection.is_mismatch(kLevel) || d.candidates[0].family == Family::kBaseline) return;
-  const auto passes = [&](const Candidate& c) {
-    d.check = detect(study, c.fit, kDraws, 2);
-    return !d.check.is_mismatch(kCheckLevel);
-  };
-  if (d.candidates[0].family == Family::kUnknown || !passes(d.candidates[0])) {
-    add_pairs(study, d.candidates);
-    if (d.candidates[0].family == Family::kUnknown || !passes(d.candidates[0])) {
-      d.word = Word::kNoneOfTheKnown;
-      d.cause = "unknown";
-      d.family = Family::kUnknown;
-      return;
-    }
+  const bool is_one_enough = is_enough(study, d);
+  const Detection check = d.check;
+  if ((!is_one_enough || check.p < kDoubt) && !is_pair_better(study, d)) {
+    d.check = check;
+    if (!is_one_enough && !is_nearly_enough(study, d)) return say_unknown(d);
   }
   if (has_wrong_size(study, d.candidates[0])) {
-    d.word = Word::kNoneOfTheKnown;
     d.flags.push_back("it acts like " + d.candidates[0].id +
                       " but not with its size: the amplitude is " +
                       rounded(d.candidates[0].fit.value(d.candidates[0].first_own(study))) +
                       " where theory has 1");
-    d.cause = "unknown";
-    d.family = Family::kUnknown;
-    return;
+    return say_unknown(d);
   }
-  d.word = strongest_word(study.observed().size());
   d.cause = d.candidates[0].id;
   d.family = d.candidates[0].family;
+  d.word = strongest_word(study.observed().size(), d.family);
+}
+
+/// What was held out may refute the cause, never elect one: a cause that predicts it worse than the
+/// baseline does gives way to the next that explains as much and predicts it better; without one it
+/// is provisional.
+void ask_held_out(const SeriesRecording& recording, const Baseline& baseline, const Study& study,
+                  Diagnosis& d) {
+  const double odds = d.candidates[0].probability;
+  std::vector<std::string> refuted;
+  double refuting = 0.0;
+  for (const Candidate& c : std::vector<Candidate>(d.candidates)) {
+    if (c.probability < kRival * odds) break;
+    if (!is_single(c) && c.id != d.cause) continue;
+    std::vector<HeldOut> held = prove(recording, baseline, study, d.candidates, c);
+    const double gain = held.empty() ? 0.0 : held[0].gain;
+    if (!refuted.empty() && gain < refuting + kRefuted) continue;
+    if (gain < -kRefuted) {
+      refuted.push_back(c.id);
+      refuting = gain;
+      continue;
+    }
+    if (refuted.empty()) {
+      d.held_out = std::move(held);
+      return;
+    }
+    if (detect(study, c.fit, kDraws, 2).is_mismatch(kCheckLevel)) continue;
+    d.flags.push_back(refuted[0] +
+                      " fits as well but predicts the held-out worse than the baseline");
+    d.cause = c.id;
+    d.family = c.family;
+    d.word = strongest_word(study.observed().size(), d.family);
+    d.held_out = std::move(held);
+    std::stable_sort(
+        d.candidates.begin(), d.candidates.end(),
+        [&](const Candidate& a, const Candidate& b) { return (a.id == c.id) > (b.id == c.id); });
+    return;
+  }
+  // No rival is better: the cause stays, and is no more than provisional.
+  d.word = Word::kProvisional;
+  d.held_out = prove(recording, baseline, study, d.candidates, d.candidates[0]);
+  d.flags.push_back("it predicts the held-out worse than the baseline does");
 }
 
 void describe_cause(const SeriesRecording& recording, const Study& study, Diagnosis& d) {
@@ -232,8 +339,9 @@ const char* word_of(Word word) {
   return "no_mismatch";
 }
 
-Word strongest_word(std::size_t conditions, bool is_calibrated) {
-  return is_calibrated && conditions > 1 ? Word::kNamed : Word::kProvisional;
+Word strongest_word(std::size_t conditions, Family family, bool is_calibrated) {
+  const bool is_strong = is_calibrated && conditions > 1 && family != Family::kParameter;
+  return is_strong ? Word::kNamed : Word::kProvisional;
 }
 
 const Candidate* Diagnosis::best() const {
@@ -256,13 +364,17 @@ Diagnosis diagnose(const SeriesRecording& recording, const Baseline& baseline) {
                                  [](const Candidate& c) { return c.id == "baseline"; });
   d.detection = detect(study, none->fit, kDraws, 1);
   decide(study, d);
+  if (d.word == Word::kNamed || d.word == Word::kProvisional)
+    ask_held_out(recording, baseline, study, d);
   describe_cause(recording, study, d);
   const Candidate* const best = d.word == Word::kNoneOfTheKnown ? nullptr : d.best();
   if (d.word != Word::kNoMismatch) locate(study, d, best);
   if (best != nullptr) {
     check_amplitude(recording, baseline, study, *best, d);
-    d.held_out = prove(recording, baseline, study, d.candidates, *best);
   }
+  const auto baseline_now = std::find_if(d.candidates.begin(), d.candidates.end(),
+                                         [](const Candidate& c) { return c.id == "baseline"; });
+  d.curves = show(recording, baseline, study, *baseline_now, best);
   d.runs = study.runs();
   d.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return d;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "diagnosis/inference/screen.hpp"
@@ -12,13 +13,14 @@ namespace grouser::diagnosis {
 enum class Word { kNoMismatch, kNamed, kProvisional, kNoneOfTheKnown };
 const char* word_of(Word word);
 
-/// Whether the method's rates were measured on recordings that it was not developed on. They were
-/// not: no verdict is stronger than provisional, and every one says so.
-inline constexpr bool kIsCalibrated = false;
+/// Whether the method's rates were measured on recordings that it was not developed on:
+/// docs/diagnosis/blind.md. Without, no verdict would be stronger than provisional.
+inline constexpr bool kIsCalibrated = true;
 
 /// How strongly a cause may be named from so many fitted conditions: kNamed by a calibrated method
-/// from two or more, else kProvisional. Local.
-Word strongest_word(std::size_t conditions, bool is_calibrated = kIsCalibrated);
+/// from two or more, else kProvisional. A value beyond its uncertainty is never more than
+/// provisional: whatever nobody has listed and changes the drag alike looks like one. Local.
+Word strongest_word(std::size_t conditions, Family family, bool is_calibrated = kIsCalibrated);
 
 /// What the baseline has on and how it is run.
 struct Baseline {
@@ -51,6 +53,18 @@ struct HeldOut {
   double gain = 0.0;             ///< ln predictive density, candidate minus baseline
   double placebo_gain = 0.0;     ///< the largest gain of any cause outside the set
   double noise = 0.0;            ///< error that noise alone would leave
+  std::vector<std::pair<std::string, double>> placebos;  ///< gain of every other cause
+};
+
+/// Recorded and predicted samples of one condition, for people to look at.
+struct Curves {
+  std::string condition;
+  bool is_held_out = false;
+  std::vector<double> times;
+  std::vector<std::vector<double>> recorded;  ///< per channel
+  std::vector<std::vector<double>> before;    ///< baseline
+  std::vector<std::vector<double>> after;     ///< with the cause; empty without one
+  std::vector<double> noise;                  ///< one standard deviation per channel
 };
 
 /// One answer.
@@ -74,6 +88,7 @@ struct Diagnosis {
   std::vector<double> amplitude_errors;
   std::vector<Location> locations;
   std::vector<HeldOut> held_out;
+  std::vector<Curves> curves;  ///< held-out conditions first
   std::vector<Finding> findings;
   std::vector<std::string> flags;  ///< what weakens the answer, one sentence each
   std::size_t fitted = 0;          ///< conditions

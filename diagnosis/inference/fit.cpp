@@ -10,14 +10,18 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kDifference = 1e-2;  // of a prior's standard deviation
+// Derivatives are differences over this part of a prior's deviation: less, and the model's own
+// steps in time show in them.
+constexpr double kDifference = 0.05;
+constexpr int kMostUpdates = 4;  // of the derivatives before they are taken anew
 
 class Fitter {
  public:
   Fitter(const Study& study, const Coordinates& coordinates)
       : study_(study), coordinates_(coordinates) {}
 
-  Fit run(const Eigen::VectorXd& start, int most_steps) {
+  /// @param is_final whether the derivatives at the end are wanted
+  Fit run(const Eigen::VectorXd& start, int most_steps, bool is_final) {
     Fit fit;
     fit.coordinates = coordinates_;
     fit.p = start;
@@ -26,13 +30,50 @@ class Fitter {
     evaluate(fit.p, fit.residual, true);
     double best = objective(fit.p, fit.residual);
     double damping = 1e-3;
-    for (int step = 0; step < most_steps && !fit.is_converged; ++step) {
-      differentiate(fit.p, fit.jacobian);
-      fit.is_converged = !improve(fit, best, damping);
+    differentiate(fit.p, fit.jacobian);
+    bool is_exact = true;
+    int used = 0;
+    for (int step = 0; step < 3 * most_steps && !fit.is_converged; ++step) {
+      const Eigen::VectorXd p = fit.p;
+      const Eigen::VectorXd residual = fit.residual;
+      const bool is_worth_it = improve(fit, best, damping);
+      if (is_worth_it && used < kMostUpdates) {
+        ++used;
+        // Derivatives cost a run each; Broyden's update costs none.
+        const Eigen::VectorXd move = fit.p - p;
+        const Eigen::VectorXd miss = residual - fit.residual - fit.jacobian * move;
+        fit.jacobian += miss * (move.transpose() / move.squaredNorm());
+        is_exact = false;
+      } else if (!is_worth_it && is_exact) {
+        fit.is_converged = true;
+      } else {
+        differentiate(fit.p, fit.jacobian);
+        is_exact = true;
+        used = 0;
+      }
     }
-    if (!fit.is_converged) differentiate(fit.p, fit.jacobian);
+    if (!is_exact && is_final) differentiate(fit.p, fit.jacobian);
     finish(fit);
     return fit;
+  }
+
+  /// Evidence where one undamped step would lead if the model were linear.
+  double guess(const Eigen::VectorXd& start) {
+    Fit fit;
+    fit.p = start;
+    bound(fit.p);
+    fit.residual.resize(static_cast<Index>(study_.rows()));
+    evaluate(fit.p, fit.residual, true);
+    differentiate(fit.p, fit.jacobian);
+    Eigen::MatrixXd normal = fit.jacobian.transpose() * fit.jacobian;
+    normal.diagonal().array() += 1.0;
+    const Eigen::LLT<Eigen::MatrixXd> factor(normal);
+    const Eigen::VectorXd step = factor.solve(fit.jacobian.transpose() * fit.residual - fit.p);
+    double half_log_det = 0.0;
+    for (Index j = 0; j < fit.p.size(); ++j) half_log_det += std::log(factor.matrixL()(j, j));
+    const double value = log_likelihood(fit.residual - fit.jacobian * step) -
+                         0.5 * (fit.p + step).squaredNorm() - half_log_det;
+    return std::isfinite(value) ? value : -1e300;
   }
 
  private:
@@ -139,12 +180,22 @@ double Fit::deviation(std::size_t coordinate) const {
 
 double log_likelihood(const Eigen::VectorXd& residual) { return -0.5 * residual.squaredNorm(); }
 
+double guess_evidence(const Study& study, const Coordinates& coordinates,
+                      const Eigen::VectorXd& start) {
+  return Fitter(study, coordinates).guess(start);
+}
+
 Fit fit(const Study& study, const Coordinates& coordinates, const Eigen::VectorXd& start,
         int most_steps) {
-  study.set_calm(true);
-  const Fit coarse = Fitter(study, coordinates).run(start, most_steps);
-  study.set_calm(false);
-  return Fitter(study, coordinates).run(coarse.p, most_steps);
+  Eigen::VectorXd p = start;
+  if (study.has_impacts()) {
+    for (const std::size_t width : {33U, 9U, 3U}) {
+      study.set_smoothing(width);
+      p = Fitter(study, coordinates).run(p, most_steps, false).p;
+    }
+    study.set_smoothing(1);
+  }
+  return Fitter(study, coordinates).run(p, most_steps, true);
 }
 
 }  // namespace grouser::diagnosis

@@ -27,11 +27,15 @@ struct Fit {
 /// Most probable parameters by Gauss-Newton with Levenberg-Marquardt damping from `start`, and the
 /// evidence by Laplace's method: priors are standard normal in p, so
 ///   ln Z = ln L - p.p/2 - ln det(J'J + 1)/2 + n ln 2   (n coordinates that are half a normal).
-/// The samples near impacts are left out at first, until the impact falls in its place.
+/// Residuals of curves that jump are smoothed at first, until the jumps fall in their places.
 /// The likelihood is normal with the noise as estimated: a heavier tail would let a fit give up a
 /// whole channel, which is what a misfit must not do. Local.
 Fit fit(const Study& study, const Coordinates& coordinates, const Eigen::VectorXd& start,
         int most_steps = 20);
+
+/// Evidence after a single undamped step from `start`, the model taken as linear there. Local.
+double guess_evidence(const Study& study, const Coordinates& coordinates,
+                      const Eigen::VectorXd& start);
 
 /// ln L of whitened residuals, up to what all models share. Local.
 double log_likelihood(const Eigen::VectorXd& residual);

@@ -30,26 +30,31 @@ const Candidate* find(const std::vector<Candidate>& candidates, const std::strin
   return nullptr;
 }
 
+bool keeps_back(const SeriesRecording& recording) {
+  return std::any_of(recording.conditions.begin(), recording.conditions.end(),
+                     [](const Condition& c) { return c.is_held_out(); });
+}
+
 void compare(const Study& fitted, const Study& held, const std::vector<Candidate>& candidates,
              const Candidate& best, std::vector<HeldOut>& out) {
-  const Candidate& none = *find(candidates, "baseline");
-  const Fit before = predict_held_out(fitted, none, held);
+  const Fit before = predict_held_out(fitted, *find(candidates, "baseline"), held);
   const Fit after = predict_held_out(fitted, best, held);
-  double placebo = 0.0;
+  HeldOut all;
   for (const Candidate& c : candidates) {
     if (c.id == "baseline" || c.id == "unknown" || best.id.find(c.id) != std::string::npos ||
-        c.probability > 0.1 * best.probability)
+        c.probability > 0.1 * best.probability || c.id.find('+') != std::string::npos)
       continue;
-    placebo =
-        std::max(placebo, predict_held_out(fitted, c, held).log_evidence - before.log_evidence);
+    const double gain = predict_held_out(fitted, c, held).log_evidence - before.log_evidence;
+    all.placebos.emplace_back(c.id, gain);
+    all.placebo_gain = std::max(all.placebo_gain, gain);
   }
+  all.gain = after.log_evidence - before.log_evidence;
   for (std::size_t r = 0; r < held.observed().size(); ++r) {
-    HeldOut h;
+    HeldOut h = all;
     h.condition = held.observed()[r].name;
     h.baseline_error = relative_error(held, r, before);
     h.candidate_error = relative_error(held, r, after);
-    h.gain = after.log_evidence - before.log_evidence;
-    h.placebo_gain = placebo;
+    h.noise = noise_error(held, r);
     out.push_back(h);
   }
 }
@@ -82,7 +87,12 @@ Fit predict_held_out(const Study& fitted, const Candidate& candidate, const Stud
       coordinates.push_back(learnt(candidate.fit, j));
       coordinates.back().conditions = every;
     }
-  return fit(held, coordinates, Eigen::VectorXd::Zero(static_cast<Index>(coordinates.size())), 12);
+  Eigen::VectorXd start = Eigen::VectorXd::Zero(static_cast<Index>(coordinates.size()));
+  const Eigen::VectorXd aligned = held.start(held.baseline());
+  for (std::size_t j = 0; j < held.baseline().size(); ++j)
+    if (held.baseline()[j].setting == Setting::kTrigger)
+      start(static_cast<Index>(j)) = aligned(static_cast<Index>(j));
+  return fit(held, coordinates, start, 12);
 }
 
 double relative_error(const Study& study, std::size_t condition, const Fit& fit) {
@@ -101,13 +111,54 @@ double relative_error(const Study& study, std::size_t condition, const Fit& fit)
   return mean;
 }
 
+double noise_error(const Study& study, std::size_t condition) {
+  const Observed& o = study.observed()[condition];
+  double mean = 0.0;
+  for (std::size_t c = 0; c < o.samples.size(); ++c) {
+    const auto [low, high] = std::minmax_element(o.samples[c].begin(), o.samples[c].end());
+    mean += o.noise[c].sd / (*high - *low) / static_cast<double>(o.samples.size());
+  }
+  return mean;
+}
+
+Curves curves_of(const Study& study, std::size_t r, const Fit& before, const Fit* after) {
+  const Observed& o = study.observed()[r];
+  Curves curves{o.name, false, o.times, o.samples, {}, {}, {}};
+  for (const NoiseModel& noise : o.noise) curves.noise.push_back(noise.sd);
+  const auto put = [&](const Fit& fit, std::vector<std::vector<double>>& out) {
+    const std::vector<double> all = study.predict(r, fit.coordinates, fit.p);
+    const auto n = static_cast<std::ptrdiff_t>(o.times.size());
+    for (std::ptrdiff_t c = 0; c < static_cast<std::ptrdiff_t>(o.samples.size()); ++c)
+      out.emplace_back(all.begin() + c * n, all.begin() + (c + 1) * n);
+  };
+  put(before, curves.before);
+  if (after != nullptr) put(*after, curves.after);
+  return curves;
+}
+
+std::vector<Curves> show(const SeriesRecording& recording, const Baseline& baseline,
+                         const Study& study, const Candidate& none, const Candidate* best) {
+  std::vector<Curves> out;
+  if (keeps_back(recording)) {
+    Study held(recording, baseline.terms, true);
+    estimate_noise(held);
+    const Fit before = predict_held_out(study, none, held);
+    const Fit after = best != nullptr ? predict_held_out(study, *best, held) : Fit{};
+    for (std::size_t r = 0; r < held.observed().size(); ++r) {
+      out.push_back(curves_of(held, r, before, best != nullptr ? &after : nullptr));
+      out.back().is_held_out = true;
+    }
+  }
+  for (std::size_t r = 0; r < study.observed().size(); ++r)
+    out.push_back(curves_of(study, r, none.fit, best != nullptr ? &best->fit : nullptr));
+  return out;
+}
+
 std::vector<HeldOut> prove(const SeriesRecording& recording, const Baseline& baseline,
                            const Study& study, const std::vector<Candidate>& candidates,
                            const Candidate& best) {
   std::vector<HeldOut> out;
-  const bool keeps_back = std::any_of(recording.conditions.begin(), recording.conditions.end(),
-                                      [](const Condition& c) { return c.is_held_out(); });
-  if (keeps_back) {
+  if (keeps_back(recording)) {
     Study held(recording, baseline.terms, true);
     estimate_noise(held);
     compare(study, held, candidates, best, out);

@@ -13,10 +13,17 @@ Fit predict_held_out(const Study& fitted, const Candidate& candidate, const Stud
 /// Errors of one condition of a fit, root mean square over range, mean of the channels.
 double relative_error(const Study& study, std::size_t condition, const Fit& fit);
 
+/// What noise alone would leave of such an error. Local.
+double noise_error(const Study& study, std::size_t condition);
+
 /// Baseline, cause and placebos on conditions that were not fitted; on each fitted one in turn when
 /// the recording keeps none back and has two.
 std::vector<HeldOut> prove(const SeriesRecording& recording, const Baseline& baseline,
                            const Study& study, const std::vector<Candidate>& candidates,
                            const Candidate& best);
+
+/// Recorded and predicted curves of all conditions, held-out ones first. `best` may be null. Local.
+std::vector<Curves> show(const SeriesRecording& recording, const Baseline& baseline,
+                         const Study& study, const Candidate& none, const Candidate* best);
 
 }  // namespace grouser::diagnosis

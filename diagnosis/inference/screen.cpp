@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis/inference/screen.hpp"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "diagnosis/hypotheses/table.hpp"
 
@@ -51,30 +54,97 @@ Fit best_fit(const Study& study, const Coordinates& coordinates,
   return best;
 }
 
+/// A sine in the gap.
+struct Swing {
+  double power = 0.0;
+  double amplitude = 0.0;  // [m]
+  double frequency = 0.0;
+  double phase = 0.0;
+};
+
+/// The sine of one frequency that takes most of the residuals of all conditions; the swing of a
+/// camera does not know when a sphere is let go.
+Swing swing_at(const Study& study, double frequency,
+               const std::vector<std::vector<double>>& predicted) {
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d right = Eigen::Vector2d::Zero();
+  const double omega = 2.0 * std::numbers::pi * frequency;
+  for (std::size_t r = 0; r < study.observed().size(); ++r) {
+    const Observed& o = study.observed()[r];
+    const std::size_t n = o.times.size();
+    for (std::size_t c = 0; c < study.channels().size(); ++c)
+      for (std::size_t i = 0; i < n; ++i) {
+        const double weight = o.weights[c][i] / o.noise[c].sd;
+        const double sine = std::sin(omega * o.times[i]);
+        const double cosine = std::cos(omega * o.times[i]);
+        const double sign = study.channels()[c] == Signal::kSettlingSpeed ? -omega : omega;
+        const Eigen::Vector2d row = weight * (study.channels()[c] == Signal::kGap
+                                                  ? Eigen::Vector2d(sine, cosine)
+                                                  : Eigen::Vector2d(sign * cosine, -sign * sine));
+        normal += row * row.transpose();
+        right += row * (weight * (o.samples[c][i] - predicted[r][c * n + i]));
+      }
+  }
+  const Eigen::Vector2d fit = normal.ldlt().solve(right);
+  return {right.dot(fit), fit.norm(), frequency, std::atan2(fit(1), fit(0))};
+}
+
+/// The two strongest swings in what the baseline leaves, between two periods in the longest
+/// condition and a quarter of the sampling frequency.
+std::vector<Swing> swings_of(const Study& study, const Fit& baseline) {
+  std::vector<std::vector<double>> predicted;
+  double longest = 0.0;
+  for (std::size_t r = 0; r < study.observed().size(); ++r) {
+    predicted.push_back(study.predict(r, baseline.coordinates, baseline.p));
+    longest = std::max(longest, study.observed()[r].times.back() - study.observed()[r].times[0]);
+  }
+  const double highest = 0.25 / study.scale_of(Scale::kInterval, 0);
+  std::vector<Swing> all;
+  for (double f = 2.0 / longest; f < highest; f += 0.25 / longest)
+    all.push_back(swing_at(study, f, predicted));
+  if (all.empty()) all.push_back(swing_at(study, highest, predicted));
+  std::sort(all.begin(), all.end(),
+            [](const Swing& a, const Swing& b) { return a.power > b.power; });
+  std::vector<Swing> best{all[0]};
+  for (const Swing& swing : all)
+    if (best.size() < 2 && std::abs(swing.frequency - best[0].frequency) > 1.5 / longest)
+      best.push_back(swing);
+  return best;
+}
+
+/// @param own number of the first of the three coordinates of a swing
+void put_swing(const Swing& swing, const Coordinates& coordinates, std::size_t own,
+               Eigen::VectorXd& p) {
+  const Coordinate& frequency = coordinates[own + 1];
+  const auto at = static_cast<Index>(own);
+  p(at) = swing.amplitude / coordinates[own].sd;
+  p(at + 1) = std::log(swing.frequency / frequency.mean) / frequency.sd;
+  p(at + 2) = swing.phase / coordinates[own + 2].sd;
+}
+
 std::vector<Eigen::VectorXd> starts_of(const Study& study, const Hypothesis& h,
                                        const Coordinates& coordinates, const Fit& baseline) {
   if (h.has_theory()) {
-    const Eigen::VectorXd means = Eigen::VectorXd::Zero(baseline.p.size());
-    return {start_of(coordinates, means, 0.0)};
+    return {study.start(coordinates), start_of(coordinates, baseline.p, 0.0)};
   }
   if (h.family == Family::kParameter) {
     // The same values, counted in wider priors.
     Eigen::VectorXd p = baseline.p;
     for (std::size_t j = 0; j < coordinates.size(); ++j)
       p(static_cast<Index>(j)) *= study.baseline()[j].sd / coordinates[j].sd;
-    return {p};
+    return {p, study.start(coordinates)};
   }
   if (h.free[0].setting == Setting::kVibration) {
     std::vector<Eigen::VectorXd> starts;
-    for (const double frequency : {-2.5, -1.5, -0.5, 0.5}) {
-      Eigen::VectorXd p = start_of(coordinates, baseline.p, 0.3);
-      p(baseline.p.size() + 1) = frequency;
-      starts.push_back(p);
+    for (const Swing& swing : swings_of(study, baseline)) {
+      starts.push_back(start_of(coordinates, baseline.p, 0.0));
+      put_swing(swing, coordinates, static_cast<std::size_t>(baseline.p.size()), starts.back());
     }
     return starts;
   }
-  if (h.free[0].is_positive) return {start_of(coordinates, baseline.p, 0.5)};
-  return {start_of(coordinates, baseline.p, 0.3)};
+  const Eigen::VectorXd means = study.start(study.baseline());
+  const double own = h.free[0].is_positive ? 0.5 : 0.3;
+  return {start_of(coordinates, baseline.p, own), start_of(coordinates, means, own)};
 }
 
 Candidate try_hypothesis(const Study& study, const Hypothesis& h, const Fit& baseline) {
@@ -122,8 +192,7 @@ Candidate try_unknown(const Study& study, const Fit& baseline) {
 }  // namespace
 
 void estimate_noise(Study& study) {
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(static_cast<Index>(study.baseline().size()));
-  const Fit baseline = fit(study, study.baseline(), zero, 8);
+  const Fit baseline = fit(study, study.baseline(), study.start(study.baseline()), 8);
   const Coordinates coordinates = study.with_latent(kLatentKnots, 0.05);
   const Fit rich = fit(study, coordinates, start_of(coordinates, baseline.p, 0.0), 6);
   for (std::size_t r = 0; r < study.observed().size(); ++r) {
@@ -136,18 +205,51 @@ void estimate_noise(Study& study) {
       for (std::size_t i = 0; i < n; ++i)
         rest[i] = o.weights[c][i] * (o.samples[c][i] - predicted[c * n + i]);
       o.noise[c] = fit_noise(rest);
-      // More noise than twice what the recording says is a misfit in disguise.
-      if (o.stated[c] > 0.0) o.noise[c].sd = std::min(o.noise[c].sd, 2.0 * o.stated[c]);
+      // More noise than four times what the recording says is a misfit in disguise.
+      if (o.stated[c] > 0.0) o.noise[c].sd = std::min(o.noise[c].sd, 4.0 * o.stated[c]);
     }
   }
 }
+
+namespace {
+
+/// The candidate's own values with the shared ones of another, counted in its own priors.
+Eigen::VectorXd borrowed(const Candidate& own, const Candidate& other, std::size_t shared) {
+  Eigen::VectorXd p = own.fit.p;
+  for (std::size_t j = 0; j < shared; ++j) {
+    const auto at = static_cast<Index>(j);
+    p(at) = other.fit.p(at) * other.fit.coordinates[j].sd / own.fit.coordinates[j].sd;
+  }
+  return p;
+}
+
+/// Curves with jumps have several maxima. Whoever has found a better one lends its shared settings
+/// to the others, which are fitted anew where a linear guess says that it pays.
+void share_maxima(const Study& study, std::vector<Candidate>& all) {
+  std::vector<Candidate> lenders = all;
+  std::sort(lenders.begin(), lenders.end(), [](const Candidate& a, const Candidate& b) {
+    return a.fit.log_likelihood > b.fit.log_likelihood;
+  });
+  lenders.resize(std::min<std::size_t>(4, lenders.size()));
+  for (Candidate& c : all)
+    for (const Candidate& lender : lenders) {
+      if (lender.id == c.id || c.family == Family::kUnknown) continue;
+      const Eigen::VectorXd start = borrowed(c, lender, study.baseline().size());
+      if (guess_evidence(study, c.fit.coordinates, start) < c.fit.log_evidence + 0.5) continue;
+      Fit now = fit(study, c.fit.coordinates, start, 20);
+      if (now.log_evidence <= c.fit.log_evidence) continue;
+      c.log_evidence += now.log_evidence - c.fit.log_evidence;
+      c.fit = std::move(now);
+    }
+}
+
+}  // namespace
 
 std::vector<Candidate> screen(const Study& study) {
   std::vector<Candidate> all;
   Candidate none;
   none.id = "baseline";
-  none.fit = fit(study, study.baseline(),
-                 Eigen::VectorXd::Zero(static_cast<Index>(study.baseline().size())));
+  none.fit = fit(study, study.baseline(), study.start(study.baseline()));
   none.log_evidence = none.fit.log_evidence;
   none.log_prior = std::log(0.5);
   all.push_back(none);
@@ -157,17 +259,16 @@ std::vector<Candidate> screen(const Study& study) {
     all[k].log_prior = std::log(0.45 / static_cast<double>(all.size() - 1));
   all.push_back(try_unknown(study, none.fit));
   all.back().log_prior = std::log(0.05);
+  if (study.has_impacts())
+    for (int round = 0; round < 2; ++round) share_maxima(study, all);
   weigh(all, 1.0);
   return all;
 }
 
-Candidate combine(const Study& study, const Candidate& a, const Candidate& b) {
+namespace {
+
+Coordinates joined(const Study& study, const Candidate& a, const Candidate& b) {
   const std::size_t shared = study.baseline().size();
-  Candidate both;
-  both.id = a.id + "+" + b.id;
-  both.family = a.family == Family::kPhysics ? a.family : b.family;
-  both.hypothesis = a.hypothesis;
-  both.channel = a.channel;
   Coordinates coordinates = a.fit.coordinates;
   // A parameter's own spread wins wherever one of the two widens it.
   for (std::size_t j = 0; j < shared; ++j)
@@ -175,12 +276,67 @@ Candidate combine(const Study& study, const Candidate& a, const Candidate& b) {
   coordinates.insert(coordinates.end(),
                      b.fit.coordinates.begin() + static_cast<std::ptrdiff_t>(shared),
                      b.fit.coordinates.end());
-  Eigen::VectorXd p = Eigen::VectorXd::Zero(static_cast<Index>(coordinates.size()));
-  for (std::size_t j = shared; j < a.fit.coordinates.size(); ++j)
-    p(static_cast<Index>(j)) = a.fit.p(static_cast<Index>(j));
+  return coordinates;
+}
+
+/// Own coordinates as in the single fits; shared ones as fitted with `a`, or at the priors' means.
+Eigen::VectorXd joined_start(const Study& study, const Candidate& a, const Candidate& b,
+                             const Coordinates& coordinates, bool is_from_a) {
+  const std::size_t shared = study.baseline().size();
+  Eigen::VectorXd p = study.start(coordinates);
+  for (std::size_t j = 0; j < a.fit.coordinates.size(); ++j)
+    if (j >= shared || is_from_a)
+      p(static_cast<Index>(j)) =
+          a.fit.p(static_cast<Index>(j)) * a.fit.coordinates[j].sd / coordinates[j].sd;
+  const bool is_theory = b.hypothesis != nullptr && b.hypothesis->has_theory();
   for (std::size_t j = shared; j < b.fit.coordinates.size(); ++j)
-    p(static_cast<Index>(a.fit.coordinates.size() + j - shared)) = b.fit.p(static_cast<Index>(j));
-  both.fit = best_fit(study, coordinates, {p});
+    p(static_cast<Index>(a.fit.coordinates.size() + j - shared)) =
+        is_theory && is_from_a ? 0.0 : b.fit.p(static_cast<Index>(j));
+  return p;
+}
+
+}  // namespace
+
+namespace {
+
+bool is_swing(const Candidate& c) {
+  return c.hypothesis != nullptr && c.hypothesis->free[0].setting == Setting::kVibration;
+}
+
+/// A swing beside another cause is what that one leaves, not what the baseline left.
+Candidate tuned(const Study& study, const Candidate& other, Candidate swing) {
+  put_swing(swings_of(study, other.fit)[0], swing.fit.coordinates, swing.first_own(study),
+            swing.fit.p);
+  return swing;
+}
+
+}  // namespace
+
+double guess_together(const Study& study, const Candidate& first, const Candidate& second) {
+  const Candidate& a = is_swing(first) ? second : first;
+  const Candidate b = is_swing(first)    ? tuned(study, second, first)
+                      : is_swing(second) ? tuned(study, first, second)
+                                         : second;
+  const Coordinates coordinates = joined(study, a, b);
+  return std::max(
+      guess_evidence(study, coordinates, joined_start(study, a, b, coordinates, true)),
+      guess_evidence(study, coordinates, joined_start(study, a, b, coordinates, false)));
+}
+
+Candidate combine(const Study& study, const Candidate& first, const Candidate& second) {
+  const Candidate& a = is_swing(first) ? second : first;
+  const Candidate b = is_swing(first)    ? tuned(study, second, first)
+                      : is_swing(second) ? tuned(study, first, second)
+                                         : second;
+  Candidate both;
+  both.id = a.id + "+" + b.id;
+  both.family = a.family == Family::kPhysics ? a.family : b.family;
+  both.hypothesis = a.hypothesis;
+  both.channel = a.channel;
+  const Coordinates coordinates = joined(study, a, b);
+  both.fit = best_fit(study, coordinates,
+                      {joined_start(study, a, b, coordinates, false),
+                       joined_start(study, a, b, coordinates, true)});
   both.log_evidence = both.fit.log_evidence;
   return both;
 }

@@ -31,6 +31,10 @@ void estimate_noise(Study& study);
 /// whose parameters have eaten the misfit. Sorted by evidence and prior. Local.
 std::vector<Candidate> screen(const Study& study);
 
+/// Evidence of two causes at once from one linear step beside the fit of `a`: a few runs instead of
+/// a fit, good enough to choose which pairs are worth fitting.
+double guess_together(const Study& study, const Candidate& a, const Candidate& b);
+
 /// Two causes at once, from their single fits.
 Candidate combine(const Study& study, const Candidate& a, const Candidate& b);
 

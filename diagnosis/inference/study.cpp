@@ -48,22 +48,81 @@ std::vector<double> weights_of(const std::vector<double>& values, double noise_s
   return weights;
 }
 
-/// From the weights of all channels of a condition.
-std::vector<double> calm_of(const std::vector<std::vector<double>>& weights) {
-  constexpr std::size_t kReach = 24;
-  const std::size_t n = weights[0].size();
-  std::vector<double> calm(n, 1.0);
-  for (std::size_t i = 0; i < n; ++i)
-    for (const std::vector<double>& of_channel : weights)
-      if (of_channel[i] < 0.05)
-        for (std::size_t k = i - std::min(i, kReach); k < std::min(n, i + kReach); ++k)
-          calm[k] = 0.01;
-  return calm;
-}
-
 double range_of(const std::vector<double>& values) {
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   return *high - *low;
+}
+
+/// Centred moving mean over `width` values, an odd number, fewer at the ends.
+void smooth(double* values, std::size_t count, std::size_t width) {
+  std::vector<double> sums(count + 1, 0.0);
+  for (std::size_t i = 0; i < count; ++i) sums[i + 1] = sums[i] + values[i];
+  const std::size_t half = width / 2;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t from = i - std::min(i, half);
+    const std::size_t to = std::min(count, i + half + 1);
+    values[i] = (sums[to] - sums[from]) / static_cast<double>(to - from);
+  }
+}
+
+/// Height above the floor of every sample: the gap if it is recorded, else the integrated speed,
+/// whose lowest point is the floor.
+std::vector<double> heights_of(const std::vector<Signal>& channels, const Observed& o) {
+  for (std::size_t c = 0; c < channels.size(); ++c)
+    if (channels[c] == Signal::kGap) return o.samples[c];
+  const double sign = channels[0] == Signal::kSettlingSpeed ? -1.0 : 1.0;
+  std::vector<double> heights{0.0};
+  for (std::size_t i = 1; i < o.times.size(); ++i)
+    heights.push_back(heights.back() + sign * 0.5 * (o.samples[0][i] + o.samples[0][i - 1]) *
+                                           (o.times[i] - o.times[i - 1]));
+  const double floor = *std::min_element(heights.begin(), heights.end());
+  for (double& height : heights) height -= floor;
+  return heights;
+}
+
+/// First sample near the floor (`heights` below `low`) at which the sphere has met it: a jump, or a
+/// recorded speed that within 16 samples falls from half its largest to an eighth of it, as no film
+/// of liquid makes it.
+std::size_t first_impact(const std::vector<Signal>& channels, const Observed& o,
+                         const std::vector<double>& heights, double low) {
+  const std::size_t n = heights.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    if (heights[i] >= low) continue;
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      if (o.weights[c][i] < 0.05) return i;
+      if (channels[c] == Signal::kGap || i < 16) continue;
+      double largest = 0.0;
+      for (std::size_t k = 0; k < n; ++k) largest = std::max(largest, std::abs(o.samples[c][k]));
+      if (std::abs(o.samples[c][i - 16]) > 0.5 * largest &&
+          std::abs(o.samples[c][i]) < 0.125 * largest)
+        return i;
+    }
+  }
+  return n;
+}
+
+/// First sample from which a sphere that has bounced stays within 3 % of the fall above the floor;
+/// the number of samples if it never does. How it then comes to rest (contact, roughness, steps of
+/// a simulation) is no part of the model.
+std::size_t start_of_rest(const std::vector<Signal>& channels, const Observed& o) {
+  std::vector<double> heights = heights_of(channels, o);
+  smooth(heights.data(), heights.size(), 9);  // noise of the gap may be as large as the rest's band
+  const double low = *std::min_element(heights.begin(), heights.end()) + 0.03 * range_of(heights);
+  const std::size_t jump = first_impact(channels, o, heights, low);
+  std::size_t rest = heights.size();
+  while (rest > jump && heights[rest - 1] < low) --rest;
+  return rest;
+}
+
+/// What the rest tells of a channel is where the sphere lies: to 1/500 of its range of positions,
+/// and next to nothing of its speed.
+void lighten_rest(const std::vector<Signal>& channels, Observed& o) {
+  for (std::size_t i = start_of_rest(channels, o); i < o.times.size(); ++i)
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      const double error = channels[c] == Signal::kGap ? 0.002 : 0.5;
+      const double ratio = error * range_of(o.samples[c]) / o.noise[c].sd;
+      o.weights[c][i] = std::min(o.weights[c][i], 1.0 / std::hypot(1.0, ratio));
+    }
 }
 
 /// Gap at the start of the series, for recordings that do not give the release's.
@@ -81,8 +140,11 @@ double first_gap(const std::vector<Signal>& channels, const Observed& observed) 
 /// Whether runs of one experiment each have their own value although its prior is the same.
 bool is_of_each_run(Setting setting) {
   return setting == Setting::kTrigger || setting == Setting::kReleaseGap ||
-         setting == Setting::kReleaseSpeed;
+         setting == Setting::kReleaseSpeed || setting == Setting::kRestitution;
 }
+
+/// No two impacts are alike: a restitution holds to 2 % at best, whatever is stated.
+constexpr double kRestitutionError = 0.02;
 
 }  // namespace
 
@@ -121,10 +183,11 @@ Study::Study(const SeriesRecording& recording, const Terms& terms, bool held_out
       o.noise.push_back(noise);
       o.weights.push_back(weights_of(o.samples[c], rough));
     }
-    o.calm = calm_of(o.weights);
     observed_.push_back(std::move(o));
   }
   add_baseline(recording, taken);
+  for (Observed& o : observed_) lighten_rest(channels_, o);
+  align();
 }
 
 void Study::add_baseline(const SeriesRecording& recording,
@@ -140,6 +203,7 @@ void Study::add_baseline(const SeriesRecording& recording,
         mean = first_gap(channels_, observed_[r]);
         sd = 0.02 * mean;
       }
+      if (entry.id == Setting::kRestitution) sd = std::hypot(sd, kRestitutionError * mean);
       observed_[r].known[entry.id] = mean;
       if (entry.id == Setting::kTrigger) observed_[r].release = mean;
       if (sd == 0.0) continue;
@@ -168,6 +232,51 @@ void Study::add_baseline(const SeriesRecording& recording,
       for (const std::size_t k : first)
         baseline_[k].label += " " + observed_[baseline_[k].conditions[0]].name;
   }
+}
+
+Eigen::VectorXd Study::start(const Coordinates& coordinates) const {
+  Eigen::VectorXd p = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(coordinates.size()));
+  for (Eigen::Index j = 0; j < start_.size(); ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    p(j) = start_(j) * baseline_[at].sd / coordinates[at].sd;
+  }
+  return p;
+}
+
+void Study::align() {
+  constexpr double kStep = 0.1;    // of the stated deviation
+  constexpr double kFirst = 0.05;  // part of the motion that is looked at, after the last release
+  start_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(baseline_.size()));
+  for (std::size_t j = 0; j < baseline_.size(); ++j) {
+    if (baseline_[j].setting != Setting::kTrigger) continue;
+    const std::size_t r = baseline_[j].conditions[0];
+    const Observed& o = observed_[r];
+    const std::size_t n = o.times.size();
+    const double last = o.release + 3.0 * baseline_[j].sd;
+    Eigen::VectorXd p = start_;
+    double least = INFINITY;
+    for (double at = -3.0; at <= 3.0; at += kStep) {
+      p(static_cast<Eigen::Index>(j)) = at;
+      const std::vector<double> predicted = predict(r, baseline_, p);
+      double cost = 0.0;
+      for (std::size_t c = 0; c < channels_.size(); ++c)
+        for (std::size_t i = 0; i < n && o.times[i] < last + kFirst * duration_of(r); ++i) {
+          const double z = (o.samples[c][i] - predicted[c * n + i]) / (5.0 * o.noise[c].sd);
+          cost += std::log1p(z * z);  // a wrong curve must not outweigh its beginning
+        }
+      if (cost >= least) continue;
+      least = cost;
+      start_(static_cast<Eigen::Index>(j)) = at;
+    }
+  }
+}
+
+bool Study::has_impacts() const {
+  for (const Observed& o : observed_)
+    for (const std::vector<double>& weights : o.weights)
+      if (std::any_of(weights.begin(), weights.end(), [](double w) { return w < 0.3; }))
+        return true;
+  return false;
 }
 
 double Study::duration_of(std::size_t condition) const {
@@ -295,9 +404,14 @@ void Study::whiten(std::size_t condition, double* values) const {
   const Observed& o = observed_[condition];
   const std::size_t n = o.times.size();
   for (std::size_t c = 0; c < channels_.size(); ++c) {
-    for (std::size_t i = 0; i < n; ++i)
-      values[c * n + i] *= o.weights[c][i] * (is_calm_ ? o.calm[i] : 1.0);
-    diagnosis::whiten(o.noise[c], values + c * n, n);
+    double* const at = values + c * n;
+    if (smoothing_ > 1) {
+      smooth(at, n, smoothing_);
+      for (std::size_t i = 0; i < n; ++i) at[i] /= o.noise[c].sd;
+      continue;
+    }
+    for (std::size_t i = 0; i < n; ++i) at[i] *= o.weights[c][i];
+    diagnosis::whiten(o.noise[c], at, n);
   }
 }
 

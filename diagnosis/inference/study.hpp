@@ -42,7 +42,6 @@ struct Observed {
   /// a sensor shows depends on when within its interval it looked. From the data alone, so that all
   /// causes are measured alike.
   std::vector<std::vector<double>> weights;
-  std::vector<double> calm;  ///< 1 far from every jump, 1/100 near one: for the first part of a fit
   std::vector<double> stated;  ///< noise per channel as the recording says, or 0
   double release = 0.0;        ///< expected time of release
   std::size_t first = 0;       ///< row of its first sample in stacked vectors
@@ -79,9 +78,17 @@ class Study {
                 Eigen::VectorXd& out) const;
   /// Whitens values that are stacked as predicted samples, in place.
   void whiten(std::size_t condition, double* values) const;
-  /// Whether samples near impacts hardly count: a fit that starts with the impact at the wrong
-  /// time would be caught by it.
-  void set_calm(bool is_calm) const { is_calm_ = is_calm; }
+  /// Whether the recorded curves jump anywhere.
+  bool has_impacts() const;
+  /// Residuals are smoothed over so many samples (1 = not) and the weights left out: where a jump
+  /// is a little early or late, a smoothed residual tells which way, a sharp one does not.
+  void set_smoothing(std::size_t width) const { smoothing_ = width; }
+
+  /// Where fits begin: the priors' means, and the releases where the curves begin to move.
+  Eigen::VectorXd start(const Coordinates& coordinates) const;
+  /// Finds the releases: within three deviations of what is stated, the one at which the first
+  /// part of the recorded curves is most like the predicted.
+  void align();
 
   double scale_of(Scale scale, int channel) const;
   double duration_of(std::size_t condition) const;
@@ -93,10 +100,11 @@ class Study {
   std::vector<Observed> observed_;
   std::vector<Signal> channels_;
   Coordinates baseline_;
+  Eigen::VectorXd start_;  ///< of the baseline's coordinates
   Terms terms_;
   std::size_t rows_ = 0;
   mutable long runs_ = 0;
-  mutable bool is_calm_ = false;
+  mutable std::size_t smoothing_ = 1;
 };
 
 }  // namespace grouser::diagnosis

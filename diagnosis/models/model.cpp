@@ -5,9 +5,7 @@
 #include <cmath>
 
 namespace grouser::diagnosis {
-namespace {
 
-/// First-order lag of values that are straight between the samples, exactly.
 void apply_lag(double lag, const std::vector<double>& times, double* values) {
   double before = values[0];
   double state = values[0];
@@ -21,8 +19,6 @@ void apply_lag(double lag, const std::vector<double>& times, double* values) {
     values[i] = state;
   }
 }
-
-}  // namespace
 
 SettingValues default_values() {
   SettingValues values{};
@@ -42,7 +38,6 @@ double LatentForce::at(double time) const {
 void apply_sensor(const SettingValues& sensor, const std::vector<double>& times, double* values) {
   const auto of = [&](Setting setting) { return sensor[index_of(setting)]; };
   const std::size_t n = times.size();
-  if (of(Setting::kLag) > 0.0) apply_lag(of(Setting::kLag), times, values);
   const double gain = 1.0 + of(Setting::kGain);
   const double zero = of(Setting::kZero);
   const double drift = of(Setting::kDrift);

@@ -53,9 +53,12 @@ class Model {
   virtual std::vector<double> force_of(Setting term, const Settings& settings) const = 0;
 };
 
-/// What moved the sensor away from the body: `values` at `times` after lag, gain, zero, drift and
-/// clipping of `sensor`, in that order, in place. The filter must be applied by the caller, who has
-/// the curve between the samples. Local.
+/// First-order lag of values that are straight between the samples, exactly, in place. Local.
+void apply_lag(double lag, const std::vector<double>& times, double* values);
+
+/// What moved the sensor away from the body: `values` at `times` after gain, zero, drift and
+/// clipping of `sensor`, in that order, in place. Lag and filter must be applied before by the
+/// caller, who has the curve between the samples. Local.
 void apply_sensor(const SettingValues& sensor, const std::vector<double>& times, double* values);
 
 }  // namespace grouser::diagnosis

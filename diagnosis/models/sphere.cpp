@@ -112,12 +112,22 @@ class Forces {
   double wall_factor() const { return wall_; }
   double stokes() const { return stokes_; }
 
-  /// Drag over the velocity relative to the fluid.
-  double drag(double gap, double relative) const {
+  /// Drag over the velocity relative to the fluid; its derivative in that velocity is put into
+  /// `slope`.
+  double drag(double gap, double relative, double* slope = nullptr) const {
     double factor = 1.0 + s_[Setting::kSideWall] * wall_;
-    if (s_[Setting::kDragInertia] != 0.0)
-      factor *= 1.0 + s_[Setting::kDragInertia] * inertia_factor(relative);
-    if (s_[Setting::kLubrication] != 0.0) factor += s_[Setting::kLubrication] * film_factor(gap);
+    double growth = factor;
+    if (s_[Setting::kDragInertia] != 0.0) {
+      const double inertia = s_[Setting::kDragInertia] * inertia_factor(relative);
+      growth *= 1.0 + 1.687 * inertia;
+      factor *= 1.0 + inertia;
+    }
+    if (s_[Setting::kLubrication] != 0.0) {
+      const double film = s_[Setting::kLubrication] * film_factor(gap);
+      factor += film;
+      growth += film;
+    }
+    if (slope != nullptr) *slope = stokes_ * std::max(0.05, growth);
     return stokes_ * std::max(0.05, factor);
   }
 
@@ -151,7 +161,11 @@ class Forces {
 class Flight {
  public:
   Flight(const Settings& s, const Forces& forces, double duration)
-      : s_(s), f_(forces), longest_(duration / 300.0), history_(longest_ / 50.0, duration) {
+      : s_(s),
+        f_(forces),
+        is_fine_(forces.history() != 0.0),
+        longest_(duration / (is_fine_ ? 450.0 : 300.0)),
+        history_(longest_ / 50.0, duration) {
     speed_ = std::abs(f_.weight()) / f_.stokes() / (1.0 + fall_inertia());
     now_.gap = std::max(0.0, s[Setting::kReleaseGap]);
     now_.velocity = -s[Setting::kReleaseSpeed];
@@ -175,7 +189,9 @@ class Flight {
   /// Steps in which the velocity changes little, but never far above the last one.
   double next_step() const {
     const double scale = std::abs(now_.velocity) + 0.3 * speed_ + 1e-12;
-    const double by_change = 0.08 * scale / (std::abs(now_.acceleration) + 1e-12);
+    // The history is of the first order at jumps.
+    const double by_change =
+        (is_fine_ ? 0.05 : 0.08) * scale / (std::abs(now_.acceleration) + 1e-12);
     const double by_growth = path_.size() > 1 ? 1.3 * step_ / s_[Setting::kStepFactor] : 1e9;
     const double floor = 1e-3 * longest_;
     return std::max(floor, std::min({longest_, by_change, by_growth})) * s_[Setting::kStepFactor];
@@ -198,18 +214,19 @@ class Flight {
     for (int i = 0; i < 15; ++i) {
       const double gap = now_.gap + 0.5 * step * (now_.velocity + v);
       const double u = f_.relative(v);
-      const double drag = f_.drag(gap, u);
+      double growth = 0.0;
+      const double drag = f_.drag(gap, u, &growth);
       const double memory = c != 0.0 ? history_.rest() + history_.slope() * (v - now_.velocity) : 0;
       const double residual = m * (v - now_.velocity) / step - given - (1.0 - theta) * force0 +
                               theta * (drag * u + c * memory);
-      double slope = m / step + theta * (1.3 * drag + c * history_.slope());
-      // Secant from the second pass on.
-      if (i > 0 && residual != residual_before)
+      double slope = m / step + theta * (growth + c * history_.slope());
+      // The film's own slope is not in `growth`: secant from the third pass on.
+      if (i > 1 && residual != residual_before)
         slope = std::max(0.2 * slope, (residual_before - residual) / change);
       residual_before = residual;
       change = residual / slope;
       v -= change;
-      if (std::abs(change) < 1e-12 * speed_) break;
+      if (std::abs(change) < 1e-9 * speed_) break;
     }
     return v;
   }
@@ -265,6 +282,7 @@ class Flight {
 
   const Settings& s_;
   const Forces& f_;
+  bool is_fine_;
   double longest_;
   double speed_ = 1.0;
   double step_ = 0.0;
@@ -344,6 +362,12 @@ class SphereModel : public Model {
               double* values) const {
     const double length =
         settings.sensors.size() > c ? settings.sensors[c][index_of(Setting::kFilter)] : 0.0;
+    const double lag =
+        settings.sensors.size() > c ? settings.sensors[c][index_of(Setting::kLag)] : 0.0;
+    if (lag > 0.0) {
+      sample_late(path, settings, c, lag, values);
+      return;
+    }
     std::size_t at = 0;
     for (std::size_t i = 0; i < plan_.times.size(); ++i) {
       const double time = plan_.times[i];
@@ -359,6 +383,23 @@ class SphereModel : public Model {
                              time + length * ((k + 0.5) / kPoints - 0.5), at) /
                      kPoints;
     }
+  }
+
+  /// With a lag, which remembers what was between the samples.
+  void sample_late(const std::vector<State>& path, const Settings& settings, std::size_t c,
+                   double lag, double* values) const {
+    constexpr std::size_t kParts = 8;
+    std::vector<double> times{plan_.times[0]};
+    for (std::size_t i = 1; i < plan_.times.size(); ++i)
+      for (std::size_t k = 1; k <= kParts; ++k)
+        times.push_back(plan_.times[i - 1] +
+                        (plan_.times[i] - plan_.times[i - 1]) * static_cast<double>(k) / kParts);
+    std::vector<double> fine;
+    std::size_t at = 0;
+    for (const double time : times)
+      fine.push_back(observe(path, settings, plan_.channels[c], time, at));
+    apply_lag(lag, times, fine.data());
+    for (std::size_t i = 0; i < plan_.times.size(); ++i) values[i] = fine[i * kParts];
   }
 
   static double observe(const std::vector<State>& path, const Settings& settings, Signal signal,

@@ -34,6 +34,11 @@ std::vector<double> periodogram(const std::vector<double>& values) {
   return power;
 }
 
+double shape_at(std::size_t k, std::size_t n, double correlation) {
+  const double angle = 2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n);
+  return 1.0 / (1.0 - 2.0 * correlation * std::cos(angle) + correlation * correlation);
+}
+
 /// -2 ln of Whittle's likelihood, the step variance profiled out and returned in `variance`.
 double misfit(const std::vector<double>& power, std::size_t from, std::size_t n, double correlation,
               double& variance) {
@@ -41,14 +46,44 @@ double misfit(const std::vector<double>& power, std::size_t from, std::size_t n,
   double logs = 0.0;
   const auto count = static_cast<double>(power.size() - from);
   for (std::size_t k = from; k < power.size(); ++k) {
-    const double angle = 2.0 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n);
-    const double shape =
-        1.0 / (1.0 - 2.0 * correlation * std::cos(angle) + correlation * correlation);
+    const double shape = shape_at(k, n, correlation);
     sum += power[k] / shape;
     logs += std::log(shape);
   }
   variance = sum / count;
   return 2.0 * (count * std::log(std::max(variance, 1e-300)) + logs);
+}
+
+/// Searches the correlation. @return its misfit
+double best_correlation(const std::vector<double>& power, std::size_t from, std::size_t n,
+                        double& correlation, double& variance) {
+  constexpr double kStep = 0.01;
+  constexpr double kLimit = 0.95;
+  double best = INFINITY;
+  for (double rho = -0.5; rho <= kLimit; rho += kStep) {
+    double at = 0.0;
+    const double value = misfit(power, from, n, rho, at);
+    if (value >= best) continue;
+    best = value;
+    correlation = rho;
+    variance = at;
+  }
+  return best;
+}
+
+/// Cuts ordinates that noise of that model would pass once in a thousand recordings (they are
+/// exponential). @return whether there were any
+bool cut_lines(std::vector<double>& power, std::size_t from, std::size_t n, double correlation,
+               double variance) {
+  const double limit = std::log(1000.0 * static_cast<double>(power.size() - from));
+  bool is_cut = false;
+  for (std::size_t k = from; k < power.size(); ++k) {
+    const double noise = variance * shape_at(k, n, correlation);
+    if (power[k] <= limit * noise) continue;
+    power[k] = noise;
+    is_cut = true;
+  }
+  return is_cut;
 }
 
 }  // namespace
@@ -58,20 +93,15 @@ double NoiseModel::step_sd() const { return sd * std::sqrt(1.0 - correlation * c
 NoiseModel fit_noise(const std::vector<double>& residual) {
   NoiseModel noise;
   const std::size_t n = residual.size();
-  const std::vector<double> power = periodogram(residual);
+  std::vector<double> power = periodogram(residual);
   const auto from = std::max<std::size_t>(
       1, static_cast<std::size_t>(std::ceil(kLowestFrequency * static_cast<double>(n))));
-  constexpr double kStep = 0.01;
-  constexpr double kLimit = 0.95;
-  double best = INFINITY;
   double variance = 0.0;
-  for (double rho = -0.5; rho <= kLimit; rho += kStep) {
-    double at = 0.0;
-    const double value = misfit(power, from, n, rho, at);
-    if (value >= best) continue;
-    best = value;
-    noise.correlation = rho;
-    variance = at;
+  double best = best_correlation(power, from, n, noise.correlation, variance);
+  // A swing is a line in the periodogram, not noise: lines are cut to where noise could be.
+  for (int pass = 0; pass < 3; ++pass) {
+    if (!cut_lines(power, from, n, noise.correlation, variance)) break;
+    best = best_correlation(power, from, n, noise.correlation, variance);
   }
   noise.sd = std::sqrt(variance / (1.0 - noise.correlation * noise.correlation));
   const auto ordinates = static_cast<double>(power.size() - from);

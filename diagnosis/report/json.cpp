@@ -65,10 +65,9 @@ Json of(const Location& l) {
           {"mask", mask_text(l.mask)}, {"latent", l.latent}, {"latent_deviation", l.latent_error}};
 }
 
-/// The figures are those of docs/diagnosis/method.md.
 constexpr const char* kNotCalibrated =
-    " The method is not calibrated: in development it raised a false alarm on 3 of 22 recordings "
-    "without mismatch (docs/diagnosis/method.md).";
+    " The method is not calibrated: its rates of error were not measured "
+    "(docs/diagnosis/method.md).";
 
 std::string verdict_text(const Diagnosis& d) {
   const std::string odds = percent(d.probability);
@@ -137,6 +136,7 @@ std::string to_json(const Diagnosis& d) {
     held.push_back({{"condition", h.condition},
                     {"baseline_error", h.baseline_error},
                     {"candidate_error", h.candidate_error},
+                    {"noise_error", h.noise},
                     {"log_gain", h.gain},
                     {"placebo_log_gain", h.placebo_gain}});
   out["held_out"] = held;

@@ -180,8 +180,35 @@ void follow_run(Case& c, Run& run) {
   for (const double value : size) run.mask.push_back(peak > 0.0 && value > 0.25 * peak);
 }
 
-// Part of the secret that parameters within their uncertainty cannot imitate, in noise.
-double visibility(Case& c) {
+// Squares of the secret and of what parameters do to the curves, in noise as it is now.
+struct Sight {
+  std::vector<std::vector<double>> normal;  // of the parameters, and with the secret
+  double square = 0.0;                      // of the secret
+
+  // Part of the secret that parameters within their uncertainty cannot imitate, in noise, if that
+  // is divided by `factor`.
+  double visibility(double factor) const {
+    const std::size_t n = normal.size();
+    std::vector<std::vector<double>> m = normal;
+    for (std::size_t a = 0; a < n; ++a) {
+      for (double& value : m[a]) value *= factor * factor;
+      m[a][a] += 1.0;  // the parameters' priors
+    }
+    std::vector<double> right;
+    for (std::size_t a = 0; a < n; ++a) right.push_back(m[a][n]);
+    for (std::size_t k = 0; k < n; ++k)
+      for (std::size_t row = 0; row < n; ++row) {
+        if (row == k) continue;
+        const double part = m[row][k] / m[k][k];
+        for (std::size_t col = k; col <= n; ++col) m[row][col] -= part * m[k][col];
+      }
+    double left = square * factor * factor;
+    for (std::size_t k = 0; k < n; ++k) left -= m[k][n] / m[k][k] * right[k];
+    return std::sqrt(std::max(0.0, left));
+  }
+};
+
+Sight look(Case& c) {
   std::vector<double> target;
   std::vector<std::vector<double>> columns;
   const auto stack = [&](auto change, std::vector<double>& out) {
@@ -223,26 +250,17 @@ double visibility(Case& c) {
       if (only(run)) w.diameter *= 1.0 + kDiameterError;
     });
   }
-  // Gram-Schmidt like ridge regression: the columns' weights have unit priors.
   const std::size_t n = columns.size();
-  std::vector<std::vector<double>> normal(n, std::vector<double>(n + 1, 0.0));
-  for (std::size_t a = 0; a < n; ++a) {
-    for (std::size_t b = 0; b < n; ++b)
-      for (std::size_t i = 0; i < target.size(); ++i) normal[a][b] += columns[a][i] * columns[b][i];
-    normal[a][a] += 1.0;
-    for (std::size_t i = 0; i < target.size(); ++i) normal[a][n] += columns[a][i] * target[i];
-  }
-  double square = 0.0;
-  for (const double value : target) square += value * value;
-  std::vector<std::vector<double>> m = normal;
-  for (std::size_t k = 0; k < n; ++k)
-    for (std::size_t row = 0; row < n; ++row) {
-      if (row == k) continue;
-      const double factor = m[row][k] / m[k][k];
-      for (std::size_t col = k; col <= n; ++col) m[row][col] -= factor * m[k][col];
+  Sight sight;
+  sight.normal.assign(n, std::vector<double>(n + 1, 0.0));
+  for (std::size_t i = 0; i < target.size(); ++i) {
+    for (std::size_t a = 0; a < n; ++a) {
+      for (std::size_t b = 0; b < n; ++b) sight.normal[a][b] += columns[a][i] * columns[b][i];
+      sight.normal[a][n] += columns[a][i] * target[i];
     }
-  for (std::size_t k = 0; k < n; ++k) square -= m[k][n] / m[k][k] * normal[k][n];
-  return std::sqrt(std::max(0.0, square));
+    sight.square += target[i] * target[i];
+  }
+  return sight;
 }
 
 void set_noise(Case& c, double share) {
@@ -357,12 +375,12 @@ Case draw_case(const std::string& kind, const std::vector<std::string>& secrets,
     set_noise(c, share);
     if (kind == "null") return c;
     const double wanted = log_uniform(random, 12.0, 60.0);
-    for (int i = 0; i < 6; ++i) {
-      c.visibility = visibility(c);
-      share = std::clamp(share * c.visibility / wanted, 2e-4, 2e-2);
-      set_noise(c, share);
-    }
-    c.visibility = visibility(c);
+    const Sight sight = look(c);
+    const double first = share;
+    for (int i = 0; i < 6; ++i)
+      share = std::clamp(share * sight.visibility(first / share) / wanted, 2e-4, 2e-2);
+    set_noise(c, share);
+    c.visibility = sight.visibility(first / share);
     if (c.visibility > 10.0 || attempt > 40) return c;
   }
 }

@@ -162,7 +162,12 @@ class Motion {
     const double part = std::min(1.0, gap_ / std::max(1e-12, -0.5 * (up_ + v) * step_));
     const double before = up_ + part * (v - up_);
     const double after = -w_.restitution * before;
-    if (0.5 * after * after / kG < 2e-5 * w_.diameter) {
+    const Parts p = laws_.at(now * step_, 0.0, after);
+    const double pull = (p.push - p.resistance * (after - p.flow) -
+                         (laws_.history() > 0.0 ? laws_.history() * past(now) : 0.0)) /
+                        p.mass;
+    // A flight of a few steps is no flight: it lies.
+    if (0.5 * after * after / kG < 2e-5 * w_.diameter || 2.0 * after < -6.0 * pull * step_) {
       is_down_ = true;
       gap_ = 0.0;
       up_ = 0.0;
@@ -170,8 +175,9 @@ class Motion {
     }
     kicks_.emplace_back(now, after - before);
     acceleration_.back() = (before - up_) / step_;
-    gap_ = after * (1.0 - part) * step_;
-    up_ = after;
+    const double rest = (1.0 - part) * step_;
+    gap_ = std::max(0.0, after * rest + 0.5 * pull * rest * rest);
+    up_ = after + pull * rest;
   }
 
   const World& w_;

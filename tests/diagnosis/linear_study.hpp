@@ -39,7 +39,6 @@ struct LinearStudy {
     Observed& o = study.observed()[0];
     o.model = std::make_unique<LinearModel>(o.times);
     o.weights[0].assign(kCount, 1.0);
-    o.calm.assign(kCount, 1.0);
     o.noise[0] = {noise_sd, correlation, 0.0, 1e12};
     for (Eigen::Index i = 0; i < kCount; ++i) {
       design(i, 0) = 1.0;
