@@ -17,11 +17,11 @@ namespace grouser {
 namespace {
 
 // In the order of the help text: from making a campaign to reading its results.
-constexpr std::array kVerbs{add_init,    add_validate,   add_expand,    add_plan,     add_submit,
-                            add_tick,    add_status,     add_show,      add_query,    add_logs,
-                            add_stop,    add_cancel,     add_resume,    add_report,   add_fsck,
-                            add_rebuild, add_schema,     add_recording, add_diagnose, add_blind,
-                            add_doctor,  add_serve,      add_completion, add_manual};
+constexpr std::array kVerbs{add_init,    add_validate, add_expand,     add_plan,     add_submit,
+                            add_tick,    add_status,   add_show,       add_query,    add_logs,
+                            add_stop,    add_cancel,   add_resume,     add_report,   add_fsck,
+                            add_rebuild, add_schema,   add_recording,  add_diagnose, add_blind,
+                            add_doctor,  add_serve,    add_completion, add_manual};
 
 int parse(CLI::App& app, int argc, char** argv, int& code) {
   try {

@@ -18,7 +18,8 @@ constexpr const char* kOwnStyle =
     ".before{fill:none;stroke:var(--soft);stroke-width:2;stroke-dasharray:6 4}\n"
     ".recorded{fill:var(--lab)}\n.recorded circle{r:2}\n"
     ".held{outline:2px solid var(--campaign);outline-offset:-1px}\n"
-    ".odds{display:block;height:.75rem;min-width:2px;border-radius:.2rem;background:var(--campaign)}"
+    ".odds{display:block;height:.75rem;min-width:2px;border-radius:.2rem;background:var(--campaign)"
+    "}"
     "\n.place{fill:var(--window)}\n";
 
 std::string section(const char* id, const std::string& heading, const std::string& body) {
@@ -83,15 +84,17 @@ std::string overlay_section(const Diagnosis& d, const SeriesRecording& recording
                     rounded(100.0 * h.baseline_error) + " %</b> before, <b>" +
                     rounded(100.0 * h.candidate_error) + " %</b> after; noise alone " +
                     rounded(100.0 * h.noise) + " %.</figcaption>\n";
-      cards += card(curves.condition + (curves.is_held_out ? ": held out, never fitted" : ": fitted"),
-                    curve_plot(curves, c, entry_of(recording.channels[c].signal)) + caption,
-                    curves.is_held_out ? "held" : "");
+      cards +=
+          card(curves.condition + (curves.is_held_out ? ": held out, never fitted" : ": fitted"),
+               curve_plot(curves, c, entry_of(recording.channels[c].signal)) + caption,
+               curves.is_held_out ? "held" : "");
     }
   const bool has_after = !d.curves.empty() && !d.curves[0].after.empty();
   const std::string legend =
       "<p class=\"note\">Dots: recorded. Broken line: the baseline, its settings fitted." +
-      std::string(has_after ? " Full line: with the cause, in a band of two deviations of the noise."
-                            : "") +
+      std::string(has_after
+                      ? " Full line: with the cause, in a band of two deviations of the noise."
+                      : "") +
       " Curves are runs of the model named below.</p>\n";
   return section("overlay", has_after ? "Before and after" : "Recorded and simulated",
                  legend + "<div class=\"grid pictures\">\n" + cards + "</div>\n");
@@ -263,8 +266,9 @@ std::string next_section(const Diagnosis& d) {
         "<li>" + escape_html(h->title) + ": " + escape_html(h->explanation.breaker) + "</li>\n";
   }
   if (d.word == Word::kNoneOfTheKnown)
-    laboratory += "<li>Repeat with another sphere: a force that scales with none of weight, drag "
-                  "and displaced fluid is no term of this catalogue</li>\n";
+    laboratory +=
+        "<li>Repeat with another sphere: a force that scales with none of weight, drag "
+        "and displaced fluid is no term of this catalogue</li>\n";
   const std::string all = simulations + laboratory;
   return section("next", "What would tell more",
                  all.empty() ? "" : "<ul class=\"plain\">\n" + all + "</ul>\n");
