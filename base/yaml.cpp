@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "base/yaml.hpp"
 
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <fstream>
@@ -91,6 +92,34 @@ YAML::Node to_yaml_cpp(const YamlNode& node) {
   return out;
 }
 
+// Notes where documents begin and nothing else.
+class DocumentStarts : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark& mark) override { line = mark.line + 1; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+
+  int line = 0;
+};
+
+// 0 = there is none. YAML::LoadAll would not come back from a text that begins with a comma: the
+// library then finds one empty document after the other at the same place.
+int line_of_second_document(const std::string& text) {
+  std::istringstream in(text);
+  YAML::Parser parser(in);
+  DocumentStarts starts;
+  return parser.HandleNextDocument(starts) && parser.HandleNextDocument(starts) ? starts.line : 0;
+}
+
 }  // namespace
 
 const YamlNode* YamlNode::find(const std::string& key) const {
@@ -152,13 +181,10 @@ YamlNode parse_yaml(const std::string& text, const std::string& name) {
         {Problem{name, 0, 0, "", "larger than 4 MiB", "a case or campaign is small"}});
   try {
     Importer importer(name);
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1) {
-      const int line = documents[1].Mark().line + 1;
-      throw ConfigError({Problem{name, line, 1, "", "a second document begins before this line",
+    if (const int line = line_of_second_document(text); line > 0)
+      throw ConfigError({Problem{name, line, 1, "", "a second document begins at this line",
                                  "one file holds one document; remove '---' and what follows"}});
-    }
-    YamlNode node = importer.import(documents.empty() ? YAML::Node() : documents[0], 0);
+    YamlNode node = importer.import(YAML::Load(text), 0);
     if (!importer.problems.empty()) throw ConfigError(importer.problems);
     return node;
   } catch (const YAML::Exception& error) {

@@ -38,7 +38,7 @@ tests            base schedulers engine campaign diagnosis
 
 # Fences: a pattern of headers and where alone they may be included.
 fences='
-^mpi[.]h$                     ^(engine/core/|tests/engine/mpi_main[.]cpp$)
+^mpi[.]h$                     ^(engine/core/|tests/(engine/mpi_main|fuzz/checkpoint_fuzz)[.]cpp$)
 ^zoltan[.]h$                  ^engine/core/
 ^(hdf5|H5[A-Za-z]*|hdf5_hl)[.]h(pp)?$  ^engine/io/
 ^omp[.]h$                     ^engine/core/

@@ -41,10 +41,16 @@ TEST(Yaml, RefusesASecondDocument) {
     parse_yaml("a: 1\n---\nb: 2\n", "two.yaml");
     ADD_FAILURE() << "the second document was ignored";
   } catch (const ConfigError& error) {
-    EXPECT_NE(std::string(error.what()).find("two.yaml:3:1: a second document"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("two.yaml:2:1: a second document"), std::string::npos)
         << error.what();
   }
   EXPECT_EQ(parse_yaml("---\na: 1\n", "one.yaml").entries.size(), 1u);
+}
+
+// The library's reader of several documents never ends on these.
+TEST(Yaml, RefusesATextThatBeginsWithAComma) {
+  for (const char* text : {",x", ", a: 1", ",\xff\xff", "}", "]"})
+    EXPECT_THROW(parse_yaml(text, "comma.yaml"), ConfigError) << text;
 }
 
 TEST(Yaml, SyntaxErrorsNameTheLine) {
