@@ -2,6 +2,7 @@
 #include <httplib.h>
 #include <sys/stat.h>
 
+#include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -130,9 +131,11 @@ TEST_F(ServedCampaign, IsTheServiceThatCarriesItOnAndTellsOfItAtOnce) {
   std::string heard;
   httplib::Client client("127.0.0.1", service.port());
   client.set_read_timeout(60);
+  const auto begun = std::chrono::steady_clock::now();
   client.Get("/api/events", [&](const char* data, std::size_t size) {
     heard.append(data, size);
-    return heard.find(R"("counts":{"COMPLETED":4})") == std::string::npos;
+    return std::chrono::steady_clock::now() - begun < std::chrono::minutes(4) &&
+           heard.find(R"("counts":{"COMPLETED":4})") == std::string::npos;
   });
   EXPECT_NE(heard.find(R"("counts":{"COMPLETED":4})"), std::string::npos) << heard;
   EXPECT_EQ(heard.rfind("event: status\ndata: {\"schema\":1,", 0), 0u) << heard;
