@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/hash.hpp"
+#include "base/lattice_units.hpp"
 #include "base/size_curve.hpp"
 #include "base/stiffness_scale.hpp"
 #include "base/substitution.hpp"
@@ -276,7 +277,7 @@ void check_fluid(FieldVisitor& v, const Case& c) {
   for (const ProbeCase& probe : c.probes)
     v.rule("probes", c.has_fluid || probe.along != "reynolds",
            "go along a Reynolds number, but there is no fluid", "give fluid:, or another variable");
-  if (!c.has_fluid || c.grains.size_curve.empty()) return;
+  if (!c.has_fluid || has_lattice(c) || c.grains.size_curve.empty()) return;
   const double diameter = c.grains.size_curve.front().diameter * c.grains.coarse_graining;
   v.rule("fluid.wall",
          c.fluid.wall.law == "none" || largest_diameter(c.grains) < 0.5 * c.fluid.wall_diameter,
@@ -326,6 +327,7 @@ void describe(FieldVisitor& v, Case& c) {
           [&](FieldVisitor& inner) { describe_activity(inner, c.activity); });
   v.group({"output", "what is written how often", kOptional},
           [&](FieldVisitor& inner) { describe_output(inner, c.output); });
+  describe_lattice(v, c);
   describe_time_step(v, c);
   check_placed(v, c);
   check_fluid(v, c);
@@ -373,6 +375,12 @@ Case bed_case(const Case& input) {
   Case bed = input;
   // Probes of a run with a wheel count from its start, when the bed has long settled.
   if (input.has_wheel) bed.probes.clear();
+  // The bed under a wheel settles in the submerged mode; the lattice begins at rest with the wheel.
+  if (input.has_wheel && has_lattice(input)) {
+    bed.fluid.mode = FluidCase{}.mode;
+    bed.fluid.has_lattice = false;
+    bed.fluid.lattice = LatticeCase{};
+  }
   bed.has_wheel = false;
   bed.wheel = WheelCase{};
   bed.contact.grain_wheel = SurfaceCase{};
@@ -394,6 +402,7 @@ double run_duration(const Case& input) {
 std::vector<Problem> case_warnings(const YamlNode& node, const Case& input) {
   std::vector<Problem> warnings = time_step_warnings(node, input);
   for (const Problem& one : stiffness_warnings(node, input)) warnings.push_back(one);
+  for (const Problem& one : lattice_warnings(node, input)) warnings.push_back(one);
   return warnings;
 }
 
@@ -429,7 +438,7 @@ std::string content_key(const Case& input) {
   // A step that follows from the input alone is in the key by the input, unless the shortest
   // collision sets it, which is younger than the first keys. So are the scale of the stiffness
   // and the activity.
-  if (is_step_of_collision(copy)) copy.numerics.time_step = time_step_of(copy);
+  if (is_step_of_collision(copy)) copy.numerics.time_step = longest_time_step(copy);
   YamlNode node = write_case(copy);
   if (copy.contact.stiffness_scale == 1.0)
     std::erase_if(node.find("contact")->entries,

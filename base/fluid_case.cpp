@@ -52,12 +52,17 @@ void describe_wall(FieldVisitor& v, FluidCase& f) {
 }  // namespace
 
 void describe(FieldVisitor& v, FluidCase& f) {
-  v.word({"mode", "submerged: the fluid moves grains, they do not move it", kOptional}, f.mode,
-         {"submerged"});
+  v.word({"mode",
+          "submerged: the fluid moves grains, they do not move it; resolved: both, on a lattice",
+          kOptional},
+         f.mode, {"submerged", "resolved"});
   v.quantity({"density", "density of the fluid"}, f.density, "kg m-3", Range::positive());
   v.quantity({"viscosity", "dynamic viscosity"}, f.viscosity, "Pa s", Range::positive());
-  v.quantity({"velocity_x", "of the undisturbed fluid, at the floor", kOptional}, f.velocity_x,
-             "m s-1", Range::any());
+  v.optional_group({"lattice", "cells that the fluid is computed on, for mode resolved", kOptional},
+                   f.has_lattice, [&](FieldVisitor& inner) { describe(inner, f.lattice); });
+  v.quantity({"velocity_x", "of the undisturbed fluid, at the floor; on a lattice, at the start",
+              kOptional},
+             f.velocity_x, "m s-1", Range::any());
   v.quantity({"velocity_y", "of the undisturbed fluid", kOptional}, f.velocity_y, "m s-1",
              Range::any());
   v.quantity({"velocity_z", "of the undisturbed fluid", kOptional}, f.velocity_z, "m s-1",

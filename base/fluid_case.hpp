@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "base/lattice_case.hpp"
 #include "base/schema.hpp"
 
 namespace grouser {
@@ -16,14 +17,18 @@ struct TermCase {
 
 /// The fluid around the grains: docs/physics/fluid_forces.md.
 struct FluidCase {
-  std::string mode = "submerged";  ///< the grains do not move the fluid
-  double density = 0.0;            ///< [kg m-3]
-  double viscosity = 0.0;          ///< dynamic [Pa s]
-  double velocity_x = 0.0;         ///< at the floor [m s-1]
-  double velocity_y = 0.0;         ///< [m s-1]
-  double velocity_z = 0.0;         ///< [m s-1]
-  double shear_rate = 0.0;         ///< of the velocity along x over the height [s-1]
-  double void_fraction = 1.0;      ///< around every grain [1]
+  /// "submerged": the grains do not move the fluid; "resolved": it is computed around each of them
+  /// on a lattice, and of the terms below buoyancy alone counts
+  std::string mode = "submerged";
+  bool has_lattice = false;
+  LatticeCase lattice;
+  double density = 0.0;        ///< [kg m-3]
+  double viscosity = 0.0;      ///< dynamic [Pa s]
+  double velocity_x = 0.0;     ///< at the floor [m s-1]
+  double velocity_y = 0.0;     ///< [m s-1]
+  double velocity_z = 0.0;     ///< [m s-1]
+  double shear_rate = 0.0;     ///< of the velocity along x over the height [s-1]
+  double void_fraction = 1.0;  ///< around every grain [1]
   TermCase drag{"schiller_naumann", 1.0};
   TermCase buoyancy{"", 1.0};
   TermCase added_mass{"sphere"};

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <numbers>
 
+#include "base/lattice_units.hpp"
 #include "base/size_curve.hpp"
 #include "base/units.hpp"
 
@@ -55,15 +56,15 @@ std::vector<Case> with_bed(const Case& input) {
   return {input, bed_case(input)};
 }
 
-std::string collision_text(const Collision& collision) {
+std::string collision_text(const Impact& collision) {
   return rounded(collision.time) + " s (" + collision.pair + " at " + rounded(collision.speed) +
          " m/s)";
 }
 
-Collision worst_collision(const Case& input) {
-  Collision worst;
+Impact worst_collision(const Case& input) {
+  Impact worst;
   for (const Case& one : with_bed(input)) {
-    const Collision collision = shortest_collision(one);
+    const Impact collision = shortest_collision(one);
     if (worst.pair.empty() || collision.time < worst.time) worst = collision;
   }
   return worst;
@@ -88,8 +89,8 @@ double fastest_speed(const Case& input) {
   return std::sqrt(2.0 * input.gravity * loose_height(input));
 }
 
-Collision shortest_collision(const Case& input) {
-  Collision shortest;
+Impact shortest_collision(const Case& input) {
+  Impact shortest;
   if (input.grains.size_curve.empty()) return shortest;
   shortest.speed = fastest_speed(input);
   const double r = smallest_radius(input.grains);
@@ -123,25 +124,35 @@ double collision_steps(const Case& input) {
   return std::max(8.0, std::ceil(1.8 * std::pow(restitution, -0.6)));
 }
 
-double time_step_of(const Case& input) {
+double longest_time_step(const Case& input) {
   if (input.numerics.time_step > 0.0) return input.numerics.time_step;
   return std::min(input.numerics.rayleigh_fraction * rayleigh_time(input),
                   shortest_collision(input).time / collision_steps(input));
 }
 
+double time_step_of(const Case& input) {
+  const double longest = longest_time_step(input);
+  if (!has_lattice(input)) return longest;
+  const LatticeScale scale = lattice_scale(input, longest);
+  const double part = scale.units.step / static_cast<double>(scale.substeps);
+  return std::isnormal(part) && part > 0.0 ? part : longest;  // a refused lattice comes to nothing
+}
+
 bool is_step_of_collision(const Case& input) {
   return input.numerics.time_step <= 0.0 &&
-         time_step_of(input) < input.numerics.rayleigh_fraction * rayleigh_time(input);
+         longest_time_step(input) < input.numerics.rayleigh_fraction * rayleigh_time(input);
 }
 
 std::string time_step_text(const Case& input) {
   const double step = time_step_of(input);
   const double rayleigh = rayleigh_time(input);
-  const Collision collision = shortest_collision(input);
+  const Impact collision = shortest_collision(input);
   const std::string decided = input.numerics.time_step > 0.0 ? "numerics.time_step"
                               : is_step_of_collision(input)  ? "the shortest collision"
                                                              : "the Rayleigh time";
-  return "time step " + rounded(step) + " s, decided by " + decided + ": " +
+  const std::string divided =
+      has_lattice(input) ? " and the lattice, of whose step it is a part" : "";
+  return "time step " + rounded(step) + " s, decided by " + decided + divided + ": " +
          rounded(step / rayleigh) + " of the Rayleigh time " + rounded(rayleigh) + " s, " +
          rounded(step / collision.time) + " of the shortest collision " + collision_text(collision);
 }
@@ -154,14 +165,14 @@ void describe_time_step(FieldVisitor& v, const Case& input) {
          "is " + rounded(step) + " s, over the Rayleigh time of the smallest grain, " +
              rounded(rayleigh) + " s: contacts would gain energy until the run breaks down",
          "give " + rounded(kSoundRayleighShare * rayleigh) + " s or less, or " + leave_out);
-  const Collision collision = worst_collision(input);
+  const Impact collision = worst_collision(input);
   v.rule(
       "numerics.time_step", step <= collision.time,
       "is " + rounded(step) + " s, longer than the shortest collision, " +
           collision_text(collision) + ": grains would pass through each other",
       "give " + rounded(collision.time / collision_steps(input)) + " s or less, or leave it out");
   for (const Case& one : with_bed(input)) {
-    const Collision meeting = shortest_collision(one);
+    const Impact meeting = shortest_collision(one);
     const bool is_number = std::isnormal(rayleigh) && std::isnormal(meeting.time);
     v.rule("grains", is_number, "come to a time step of " + rounded(time_step_of(one)) + " s",
            "look at the units of density, young_modulus and diameters");
@@ -197,7 +208,7 @@ std::vector<Problem> time_step_warnings(const YamlNode& node, const Case& input)
   warn(time_step_of(input) / rayleigh, kSoundRayleighShare,
        "the Rayleigh time of the smallest grain, " + rounded(rayleigh) + " s");
   if (!is_given) return warnings;
-  const Collision collision = worst_collision(input);
+  const Impact collision = worst_collision(input);
   warn(time_step_of(input) / collision.time, 1.0 / (kSoundStepShare * collision_steps(input)),
        "the shortest collision, " + collision_text(collision));
   return warnings;

@@ -23,7 +23,7 @@ double collision_steps(const Case& input);
 inline constexpr double kSoundStepShare = 0.625;
 
 /// The shortest collision that a case implies.
-struct Collision {
+struct Impact {
   double time = 0.0;     ///< from touch to parting [s]
   double speed = 0.0;    ///< of the two against each other [m s-1]
   double overlap = 0.0;  ///< largest, over the radius of the smallest grain [1]
@@ -43,10 +43,14 @@ double fastest_speed(const Case& input);
 /// wheel, without damping, which makes it longer. To four digits, so that the last bit of no
 /// machine's mathematical library gets into the step. Zeros without a size curve.
 /// Source: Johnson 1985, eq. 11.24; Landau and Lifshitz, Theory of Elasticity, section 9.
-Collision shortest_collision(const Case& input);
+Impact shortest_collision(const Case& input);
 
-/// Time step of a case [s]: given, or the smaller of its fraction of the Rayleigh time and the
-/// shortest collision over `collision_steps`. Local.
+/// The longest step that a case allows its grains [s]: given, or the smaller of its fraction of the
+/// Rayleigh time and the shortest collision over `collision_steps`. Local.
+double longest_time_step(const Case& input);
+
+/// Time step of a case [s]: the longest, or on a lattice the longest whole part of the lattice's
+/// step that is no longer. Local.
 double time_step_of(const Case& input);
 
 /// Whether the shortest collision and nothing else sets the step. Local.

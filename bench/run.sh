@@ -3,6 +3,7 @@
 # Builds the benchmarks and runs one of them; see docs/performance/.
 #   bench/run.sh dem [--json FILE] [--quick]
 #   bench/run.sh lbm [--json FILE] [--cells N] [--rounds N] [--others]
+#   bench/run.sh coupled [--json FILE] [--cells N] [--rounds N]
 #   bench/run.sh scaling [--json FILE] [--ranks N,N,...] [--svg FILE]
 #   bench/run.sh reliability [--json FILE] [--manager-kills N] [--engine-kills N] [--no-space N]
 #   bench/run.sh campaign [--json FILE] [--runs N] [--chunks N] [--active N]
@@ -10,6 +11,7 @@
 # dem: the DEM engine beside LAMMPS, LIGGGHTS and YADE on one settled bed. The first call prepares
 # the bed (some ten minutes on two cores) and keeps it under build/bench/data.
 # lbm: plain flow on a lattice beside the limit of bandwidth of the same run.
+# coupled: a suspension of moving spheres on a lattice beside plain flow of the same run.
 # scaling: the engine's messages on 64 to 4 096 simulated ranks; needs Debian's libsimgrid-dev.
 # GROUSER_BENCH_BUILD: another build folder.
 set -euo pipefail
@@ -46,8 +48,8 @@ if [ "${1:-}" = reliability ] || [ "${1:-}" = campaign ]; then
   python3 "$root/bench/$bench/run.py" "${programs[@]}" "$@"
   exit 0
 fi
-if [ "${1:-}" != dem ] && [ "${1:-}" != lbm ]; then
-  sed -n '3,12s/^# \{0,1\}//p' -- "${BASH_SOURCE[0]}" >&2
+if [ "${1:-}" != dem ] && [ "${1:-}" != lbm ] && [ "${1:-}" != coupled ]; then
+  sed -n '3,14s/^# \{0,1\}//p' -- "${BASH_SOURCE[0]}" >&2
   exit 2
 fi
 kind=$1
@@ -86,7 +88,16 @@ lbm() {
   python3 "$root/bench/lbm/compare.py" "$build/bin/lbm_bench" "$@"
 }
 
+coupled() {
+  cmake --build "$build" --target coupled_bench >&2
+  python3 "$root/bench/lbm/coupled.py" "$build/bin/coupled_bench" "$@"
+}
+
 (cd -- "$root" && cmake --preset release -B "$build" -DGROUSER_BENCH=ON) >&2
+if [ "$kind" = coupled ]; then
+  coupled "$@"
+  exit 0
+fi
 if [ "$kind" = lbm ]; then
   lbm "$@"
   exit 0

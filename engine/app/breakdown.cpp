@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/app/breakdown.hpp"
 
+#include <cmath>
+
 #include "base/time_step.hpp"
 #include "base/units.hpp"
 
@@ -76,6 +78,24 @@ std::optional<std::string> breakdown_of(const World& world, const World::StepRes
       0.5 * input.grains.size_curve.front().diameter * input.grains.coarse_graining;
   if (result.fastest * world.settings().time_step > radius) return too_fast(result, radius, input);
   return std::nullopt;
+}
+
+std::optional<std::string> breakdown_of(const ResolvedFlow& fluid) {
+  // At a Mach number of 1 the equilibrium has negative populations.
+  constexpr double kMostMachOfACell = 1.0;
+  const FlowTotals totals = fluid.flow().totals();
+  const double mach = std::sqrt(3.0) * totals.max_speed_lu;
+  if (totals.finite && mach < kMostMachOfACell) return std::nullopt;
+  const std::string what = totals.finite
+                               ? "the fluid moves at " +
+                                     rounded(fluid.scale().units.velocity(totals.max_speed_lu)) +
+                                     " m/s somewhere, a Mach number of " + rounded(mach)
+                               : "the fluid's density or velocity is not a number";
+  return what + "; the relaxation time is " + rounded(fluid.scale().relaxation_time) +
+         ", the grid Reynolds number " + rounded(fluid.scale().grid_reynolds) +
+         " at fluid.lattice.speed: give smaller cells, a lower mach, or the speed that there "
+         "really "
+         "is";
 }
 
 std::string heating_text(const EnergyLedger& ledger, const World::Survey& survey,

@@ -26,6 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kSettleCheckSteps = 50;
+constexpr std::int64_t kFluidCheckSteps = 500;  // of the fluid
 constexpr std::size_t kKeptCheckpoints = 2;
 // Table of what this class itself must remember.
 constexpr const char* kOwnTable = "run";
@@ -138,7 +139,8 @@ void Run::begin_from_bed() {
   if (!found || !found->settled_bed)
     throw FormatError("no settled bed with key " + bed_key + " in " + options_.bed.string());
   std::vector<Stateful*> settled{&world_};
-  if (outer_) settled.push_back(outer_.get());
+  // On a lattice the bed has settled in another mode, without one.
+  if (outer_ && outer_->lattice() == nullptr) settled.push_back(outer_.get());
   for (Stateful* module : settled) module->begin_load();
   bed.read(*found, [&](const StateTable& rows) {
     for (Stateful* module : settled) module->load_rows(rows);
@@ -245,8 +247,9 @@ Outcome Run::execute() {
 
 World::StepResult Run::one_step(double request) {
   const bool with_track = track_steps_ > 0 && step_ % track_steps_ == 0;
-  if (outer_) outer_->announce(time(), with_track);
+  if (outer_) outer_->announce(step_, time(), with_track);
   const World::StepResult result = world_.step(request);
+  if (outer_) outer_->load_bodies();
   if (with_track) add_track_row(step_);
   ++step_;
   return result;
@@ -263,8 +266,12 @@ std::optional<EngineCode> Run::after_step(const World::StepResult& result) {
     return EngineCode::kBrokeDown;
   }
   if (step_ % series_steps_ == 0) add_series_row();
-  if (snapshot_steps_ > 0 && step_ % snapshot_steps_ == 0)
-    write_snapshot(world_, options_.run_directory / run_files::kSnapshots, step_, time());
+  if (snapshot_steps_ > 0 && step_ % snapshot_steps_ == 0) {
+    const fs::path directory = options_.run_directory / run_files::kSnapshots;
+    write_snapshot(world_, directory, step_, time());
+    if (outer_ && outer_->lattice() != nullptr)
+      write_fluid_snapshot(ranks_, *outer_->lattice(), directory, step_, time());
+  }
   if (const auto code = check_settling()) return code;
   const bool run_ends = end_step_ > 0 && step_ >= end_step_;
   const bool chunk_ends = until_step_ > 0 && step_ >= until_step_;
@@ -274,15 +281,29 @@ std::optional<EngineCode> Run::after_step(const World::StepResult& result) {
     return run_ends ? EngineCode::kFinished : EngineCode::kPaused;
   }
   if (result.request >= kPause) return end_by_request(result.request);
-  const bool is_due =
-      options_.checkpoint_seconds ? result.request == kCheckpoint : step_ % checkpoint_steps_ == 0;
-  if (is_due && !write_checkpoint(false)) return EngineCode::kFenceLost;
+  if (saves_after(result) && !write_checkpoint(false)) return EngineCode::kFenceLost;
   return std::nullopt;
+}
+
+// Whether a checkpoint follows this step, as far as the clock, the step and requests say.
+bool Run::saves_after(const World::StepResult& result) const {
+  if ((end_step_ > 0 && step_ >= end_step_) || (until_step_ > 0 && step_ >= until_step_))
+    return true;
+  if (result.request >= kPause) return true;
+  return options_.checkpoint_seconds ? result.request == kCheckpoint
+                                     : step_ % checkpoint_steps_ == 0;
 }
 
 std::optional<std::string> Run::breakdown(const World::StepResult& result) {
   if (auto what = breakdown_of(world_, result, input_)) return what;
   if (wheel_ && !wheel_->fault().empty()) return wheel_->fault();
+  // Seldom, because it walks over all cells; and before every checkpoint, which must be good.
+  if (outer_ && outer_->lattice() != nullptr) {
+    const ResolvedFlow& fluid = *outer_->lattice();
+    const bool is_due = step_ % (kFluidCheckSteps * fluid.scale().substeps) == 0;
+    if (is_due || saves_after(result))
+      if (auto what = breakdown_of(fluid)) return what;
+  }
   if (step_ % EnergyLedger::kInterval != 0) return std::nullopt;
   const World::Survey survey = world_.survey();
   mean_overlap_ = survey.mean_overlap;
@@ -338,6 +359,12 @@ State Run::state(const StatePiece& piece) const {
   return state;
 }
 
+std::int64_t Run::rows_of_state() const {
+  if (!outer_ || outer_->lattice() == nullptr) return particles_;
+  const CellCounts& cells = outer_->lattice()->flow().blocks().cells();
+  return std::max(particles_, cells[0] * cells[1] * cells[2]);
+}
+
 bool Run::write_checkpoint(bool settled) {
   const double from = elapsed();
   CheckpointManifest manifest;
@@ -359,7 +386,7 @@ bool Run::write_checkpoint(bool settled) {
   }
   checkpoints_.remove_leftovers();  // before the write, which may need their room
   const auto written = checkpoints_.write([&](const StatePiece& piece) { return state(piece); },
-                                          checkpoints_.pieces_for(particles_), manifest,
+                                          checkpoints_.pieces_for(rows_of_state()), manifest,
                                           [&] {
                                             try {
                                               return owns_fence();

@@ -64,6 +64,8 @@ class Run {
   bool is_done() const;
   std::optional<EngineCode> after_step(const World::StepResult& result);
   std::optional<std::string> breakdown(const World::StepResult& result);
+  bool saves_after(const World::StepResult& result) const;
+  std::int64_t rows_of_state() const;
   std::optional<EngineCode> check_settling();
   double request() const;
   EngineCode end_by_request(double request);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/lattice_units.hpp"
 #include "base/list_reach.hpp"
 #include "base/size_curve.hpp"
 #include "base/time_step.hpp"
@@ -74,6 +75,7 @@ World make_world(const Communicator& ranks, const Case& input, int threads) {
 
 void log_time_step(const Case& input) {
   spdlog::info("app {}", time_step_text(input));
+  if (has_lattice(input)) spdlog::info("app {}", lattice_text(input));
   for (const Problem& one : case_warnings(YamlNode{}, input))
     spdlog::warn("app {} {}; {}", one.key, one.problem, one.hint);
 }

@@ -80,6 +80,33 @@ VtkGrid grid_of_body(const Body& body, bool is_mine) {
 
 }  // namespace
 
+void write_fluid_snapshot(const Communicator& ranks, const ResolvedFlow& fluid,
+                          const std::filesystem::path& directory, std::int64_t step, double time) {
+  const CellBlocks& blocks = fluid.flow().blocks();
+  const LatticeUnits& units = fluid.scale().units;
+  // Sorted by layers, so that each rank comes to hold whole ones.
+  StateTable table;
+  table.name = "fluid";
+  table.key_count = blocks.cells()[2];
+  table.real_fields = {{"velocity", "m s-1", 3}, {"pressure", "Pa", 1}};
+  for (std::int64_t z = blocks.low(2); z < blocks.high(2); ++z)
+    for (std::int64_t y = blocks.low(1); y < blocks.high(1); ++y)
+      for (std::int64_t x = blocks.low(0); x < blocks.high(0); ++x) {
+        const FlowNode node = fluid.flow().node(x, y, z);
+        table.integers.insert(table.integers.end(), {z, y * blocks.cells()[0] + x});
+        push(table.reals, units.velocity(1.0) * node.velocity_lu);
+        table.reals.push_back(units.pressure(node.density_lu));
+      }
+  sort_rows(ranks, table);
+  VtkImage image;
+  image.cells = blocks.cells();
+  image.spacing = units.cell;
+  image.time = time;
+  image.fields = {{"velocity [m s-1]", 3, column_of(table, 0, 3)},
+                  {"pressure [Pa]", 0, column_of(table, 3, 1)}};
+  write_vtkhdf(ranks, file_of(directory, "fluid", step), image);
+}
+
 void write_snapshot(const World& world, const std::filesystem::path& directory, std::int64_t step,
                     double time) {
   VtkGrid grains = grid_of_grains(world);

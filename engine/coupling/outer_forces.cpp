@@ -2,6 +2,7 @@
 #include "engine/coupling/outer_forces.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 #include "base/errors.hpp"
 
@@ -53,10 +54,16 @@ std::vector<double> track_values(const TrackRow& row) {
 }
 
 OuterForces::OuterForces(const Case& input, World& world)
-    : world_(world), walls_{input.box.length, input.box.width}, probes_(input.probes) {
+    : world_(world),
+      walls_{input.box.length, input.box.width},
+      probes_(input.probes),
+      input_(input.fluid) {
   if (input.output.has_track) tracked_ = input.output.track.grain;
   const WorldSettings& settings = world.settings();
-  if (input.has_fluid) fluid_.emplace(input.fluid, walls_, settings.time_step, settings.gravity);
+  if (has_lattice(input))
+    lattice_ = std::make_unique<ResolvedFlow>(input, world);
+  else if (input.has_fluid)
+    fluid_.emplace(input.fluid, walls_, settings.time_step, settings.gravity);
   world.set_grain_forces(this);
 }
 
@@ -66,10 +73,15 @@ bool OuterForces::are_in(const Case& input) {
   return input.has_fluid || !input.probes.empty() || input.output.has_track;
 }
 
-void OuterForces::announce(double time, bool with_track) {
+void OuterForces::announce(std::int64_t step, double time, bool with_track) {
+  if (lattice_) lattice_->advance(step);
   time_ = time;
   wants_row_ = with_track && tracked_ >= 0;
   row_.reset();
+}
+
+void OuterForces::load_bodies() {
+  if (lattice_ && lattice_->wheel()) world_.add_load(*lattice_->wheel(), lattice_->wheel_load());
 }
 
 std::optional<TrackRow> OuterForces::take_row() {
@@ -107,10 +119,33 @@ Vec3 OuterForces::probe_force(const Particle& p) const {
     const double value = probe.along == "time"    ? time_
                          : probe.along == "gap"   ? p.position.z - p.radius
                          : probe.along == "speed" ? norm(p.velocity)
-                                                  : fluid_->reynolds(p, p.velocity);
+                                                  : reynolds(p, p.velocity);
     force += along(probe.axis, probe.at(value));
   }
   return force;
+}
+
+// Of the fluid as it is prescribed; on a lattice, of the fluid at rest.
+double OuterForces::reynolds(const Particle& p, const Vec3& velocity) const {
+  if (fluid_) return fluid_->reynolds(p, velocity);
+  if (!lattice_) return 0.0;
+  return Fluid{input_.density, input_.viscosity}.reynolds(2.0 * p.radius, norm(velocity));
+}
+
+GrainGain OuterForces::lattice_gain(const Particle& p, const GrainLoad& load, const Vec3& probe,
+                                    ForceParts& parts) const {
+  const WorldSettings& settings = world_.settings();
+  const GrainLoad fluid = lattice_->load(p.id);
+  const double displaced = input_.density * 4.0 / 3.0 * std::numbers::pi * p.radius * p.radius *
+                           p.radius * lattice_->wet_share(p);
+  const Vec3 lift{0.0, 0.0, input_.buoyancy.amplitude * displaced * settings.gravity};
+  parts.force[ForceParts::kContact] = load.force;
+  parts.force[ForceParts::kWeight] = {0.0, 0.0, -p.mass * settings.gravity};
+  parts.force[ForceParts::kBuoyancy] = lift;
+  parts.force[ForceParts::kDrag] = fluid.force;
+  parts.force[ForceParts::kProbe] = probe;
+  return plain_gain(p, {load.force + fluid.force + lift + probe, load.moment + fluid.moment},
+                    settings.time_step, settings.gravity);
 }
 
 GrainGain OuterForces::gain(const Particle& p, const GrainLoad& load) {
@@ -118,7 +153,9 @@ GrainGain OuterForces::gain(const Particle& p, const GrainLoad& load) {
   const Vec3 probe = probes_.empty() ? Vec3{} : probe_force(p);
   ForceParts parts;
   GrainGain gain;
-  if (fluid_) {
+  if (lattice_) {
+    gain = lattice_gain(p, load, probe, parts);
+  } else if (fluid_) {
     HistoryModes::Memory* memory = fluid_->has_history() ? &memories_.at(p.id) : nullptr;
     gain = fluid_->gain(p, load, probe, memory, parts);
   } else {
@@ -138,21 +175,37 @@ void OuterForces::record(const Particle& p, const GrainGain& gain, const ForcePa
   row.acceleration = (1.0 / world_.settings().time_step) * gain.velocity;
   row.spin = p.spin + 0.5 * gain.spin;
   row.gap = p.position.z - p.radius;
-  row.reynolds = fluid_ ? fluid_->reynolds(p, row.velocity) : 0.0;
+  row.reynolds = reynolds(p, row.velocity);
   row.contacts = contacts_;
   row.parts = parts;
 }
 
 void OuterForces::give(std::int64_t id, Bytes& to) {
+  if (lattice_) lattice_->give(id, to);
   const auto found = memories_.find(id);
   if (found == memories_.end()) return;
   append_bytes(to, &found->second, 1);
   memories_.erase(found);
 }
 
-void OuterForces::take(std::int64_t id, ByteReader& from) { from.take(&memories_[id], 1); }
+void OuterForces::take(std::int64_t id, ByteReader& from) {
+  if (lattice_)
+    lattice_->take(id, from);
+  else
+    from.take(&memories_[id], 1);
+}
+
+void OuterForces::begin_load() {
+  memories_.clear();
+  if (lattice_) lattice_->begin_load();
+}
+
+void OuterForces::end_load() {
+  if (lattice_) lattice_->end_load();
+}
 
 void OuterForces::save_state(State& state, const StatePiece& piece) const {
+  if (lattice_) lattice_->save_state(state, piece);
   if (!fluid_ || !fluid_->has_history()) return;
   StateTable table = history_table();
   table.key_count = world_.particle_count();
@@ -166,6 +219,7 @@ void OuterForces::save_state(State& state, const StatePiece& piece) const {
 }
 
 void OuterForces::load_rows(const StateTable& rows) {
+  if (lattice_) lattice_->load_rows(rows);
   if (rows.name != kTable || !fluid_ || !fluid_->has_history()) return;
   if (rows.real_width() != kMemoryWidth)
     throw FormatError("the checkpoint's fluid_history has another width");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -9,6 +10,7 @@
 #include "base/case.hpp"
 #include "engine/core/state_io.hpp"
 #include "engine/coupling/fluid_forces.hpp"
+#include "engine/coupling/resolved_flow.hpp"
 #include "engine/dem/world.hpp"
 
 namespace grouser {
@@ -43,9 +45,11 @@ class OuterForces : public GrainForces, public Stateful {
   /// Whether a case has anything of this kind.
   static bool are_in(const Case& input);
 
-  /// Says what time the next step begins at, and whether its motion of the tracked grain is
-  /// wanted. Local.
-  void announce(double time, bool with_track);
+  /// Says which step comes next and what time it begins at, and whether its motion of the tracked
+  /// grain is wanted; a fluid on a lattice makes its step if it is due. Collective.
+  void announce(std::int64_t step, double time, bool with_track);
+  /// Adds the fluid's load to the body that it acts on, after the step. Local.
+  void load_bodies();
   /// The row of the step just done on rank 0, nothing elsewhere or when none was wanted.
   /// Collective.
   std::optional<TrackRow> take_row();
@@ -56,19 +60,27 @@ class OuterForces : public GrainForces, public Stateful {
   void take(std::int64_t id, ByteReader& from) override;
 
   void save_state(State& state, const StatePiece& piece = {}) const override;
-  void begin_load() override { memories_.clear(); }
+  void begin_load() override;
   void load_rows(const StateTable& rows) override;
-  void end_load() override {}
+  void end_load() override;
+
+  /// The fluid on a lattice; nullptr without one.
+  const ResolvedFlow* lattice() const { return lattice_.get(); }
 
  private:
   Vec3 probe_force(const Particle& p) const;
+  double reynolds(const Particle& p, const Vec3& velocity) const;
+  GrainGain lattice_gain(const Particle& p, const GrainLoad& load, const Vec3& probe,
+                         ForceParts& parts) const;
   void record(const Particle& p, const GrainGain& gain, const ForceParts& parts);
 
   World& world_;
   BoxWalls walls_;
   std::vector<ProbeCase> probes_;
   std::int64_t tracked_ = -1;
-  std::optional<FluidForces> fluid_;
+  FluidCase input_;
+  std::optional<FluidForces> fluid_;                                 // mode submerged
+  std::unique_ptr<ResolvedFlow> lattice_;                            // mode resolved
   std::unordered_map<std::int64_t, HistoryModes::Memory> memories_;  // by grain, of this rank's
   double time_ = 0.0;
   bool wants_row_ = false;

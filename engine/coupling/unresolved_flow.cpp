@@ -116,7 +116,8 @@ std::vector<UnresolvedFlow::Deposit> UnresolvedFlow::deliver(const std::vector<G
   const std::vector<Bytes> in = ranks_.exchange_all(out);
   for (std::size_t from = 0; from < in.size(); ++from) {
     ByteReader reader(in[from]);
-    while (!reader.empty()) reader.take(&all.emplace_back(Deposit{}, static_cast<int>(from)).first, 1);
+    while (!reader.empty())
+      reader.take(&all.emplace_back(Deposit{}, static_cast<int>(from)).first, 1);
   }
   std::sort(all.begin(), all.end(),
             [](const auto& a, const auto& b) { return a.first.id < b.first.id; });
@@ -144,8 +145,7 @@ void UnresolvedFlow::put_down(const std::vector<Deposit>& deposits, bool with_fo
   for (const auto field : {Fields::kPushX, Fields::kPushY, Fields::kPushZ, Fields::kDrag})
     fields_->fill(field, 0.0);
   for (const Deposit& d : deposits)
-    Kernel(d.place, blocks).each([&](std::int64_t x, std::int64_t y, std::int64_t z,
-                                     double share) {
+    Kernel(d.place, blocks).each([&](std::int64_t x, std::int64_t y, std::int64_t z, double share) {
       const CellCounts& n = blocks.cells();
       x = (x + n[0]) % n[0];
       y = (y + n[1]) % n[1];
@@ -210,8 +210,7 @@ std::vector<PoreState> UnresolvedFlow::pores_of(const std::vector<Deposit>& depo
       reader.take(&found, 1);
       pores[static_cast<std::size_t>(found.index)] = {
           speed * found.velocity, found.void_fraction,
-          gradient * found.pressure_gradient -
-              settings_.fluid.density * settings_.pressure_fall};
+          gradient * found.pressure_gradient - settings_.fluid.density * settings_.pressure_fall};
     }
   }
   return pores;
@@ -258,9 +257,9 @@ double UnresolvedFlow::void_fraction(std::int64_t x, std::int64_t y, std::int64_
 Vec3 UnresolvedFlow::velocity(std::int64_t x, std::int64_t y, std::int64_t z) const {
   y = local(1, y);
   z = local(2, z);
-  return (settings_.cell / settings_.time_step) *
-         Vec3{fields_->at(Fields::kVelocityX, x, y, z), fields_->at(Fields::kVelocityY, x, y, z),
-              fields_->at(Fields::kVelocityZ, x, y, z)};
+  return (settings_.cell / settings_.time_step) * Vec3{fields_->at(Fields::kVelocityX, x, y, z),
+                                                       fields_->at(Fields::kVelocityY, x, y, z),
+                                                       fields_->at(Fields::kVelocityZ, x, y, z)};
 }
 
 double UnresolvedFlow::pressure(std::int64_t x, std::int64_t y, std::int64_t z) const {

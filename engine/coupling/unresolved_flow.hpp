@@ -67,7 +67,8 @@ class UnresolvedFlow : public Stateful {
 
   /// Tells grains where they are, before the first step.
   /// @param grains of this rank, in any order; those of all ranks are all there are
-  /// @throws ConfigError on every rank when a cell has less than the least void fraction. Collective.
+  /// @throws ConfigError on every rank when a cell has less than the least void fraction.
+  /// Collective.
   std::vector<PoreState> look(const std::vector<GrainInFlow>& grains);
 
   /// One step of the lattice. Collective.

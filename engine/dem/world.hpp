@@ -97,6 +97,10 @@ class World : public Stateful {
   /// Force and moment of all grains on a body in the last step. Local.
   const BodyLoad& load(std::size_t body) const { return loads_[body]; }
 
+  /// Adds what else acts on a body in the step just done, a fluid's load. The same on every rank.
+  /// Local.
+  void add_load(std::size_t body, const BodyLoad& load) { loads_[body].add(load); }
+
   /// What all grains and contacts hold after a step. The elastic part is that of the forces of the
   /// step, the height is taken half a step back where the velocities are.
   struct Survey {

@@ -68,6 +68,15 @@ void write_numbers(hid_t place, const char* name, const std::vector<std::int64_t
            std::string("write attribute ") + name);
 }
 
+void write_reals(hid_t place, const char* name, const std::vector<double>& values) {
+  const hsize_t count = values.size();
+  H5Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose, "make a data space");
+  H5Handle attribute(H5Acreate2(place, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT),
+                     H5Aclose, std::string("make attribute ") + name);
+  h5_check(H5Awrite(attribute, H5T_NATIVE_DOUBLE, values.data()),
+           std::string("write attribute ") + name);
+}
+
 void write_number(hid_t place, const char* name, std::int64_t value) {
   H5Handle space(H5Screate(H5S_SCALAR), H5Sclose, "make a scalar");
   H5Handle attribute(H5Acreate2(place, name, H5T_STD_I64LE, space, H5P_DEFAULT, H5P_DEFAULT),
@@ -125,6 +134,32 @@ H5Handle write_rows(const Communicator& ranks, hid_t group, const std::string& n
   H5Handle dataset = make_rows<Number>(group, name, ranks.sum(rows), width);
   write_rows_at(ranks, dataset, 0, values, width);
   return dataset;
+}
+
+void write_layers(const Communicator& ranks, hid_t group, const std::string& name,
+                  const std::vector<float>& values, const std::array<std::int64_t, 3>& cells,
+                  std::size_t width) {
+  const int dimensions = width == 0 ? 3 : 4;
+  hsize_t extent[4] = {static_cast<hsize_t>(cells[2]), static_cast<hsize_t>(cells[1]),
+                       static_cast<hsize_t>(cells[0]), width};
+  H5Handle space(H5Screate_simple(dimensions, extent, nullptr), H5Sclose, "make a data space");
+  H5Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "prepare a dataset");
+  h5_check(H5Pset_obj_track_times(properties, false), "prepare a dataset");
+  H5Handle dataset(H5Dcreate2(group, name.c_str(), h5_type<float>(), space, H5P_DEFAULT, properties,
+                              H5P_DEFAULT),
+                   H5Dclose, "make dataset " + name);
+  const std::int64_t layer =
+      cells[0] * cells[1] * static_cast<std::int64_t>(std::max<std::size_t>(width, 1));
+  const std::int64_t layers = static_cast<std::int64_t>(values.size()) / layer;
+  const hsize_t start[4] = {static_cast<hsize_t>(ranks.sum_before(layers)), 0, 0, 0};
+  extent[0] = static_cast<hsize_t>(layers);
+  H5Handle memory(H5Screate_simple(dimensions, extent, nullptr), H5Sclose, "make a data space");
+  select_rows(space, memory, start, extent);
+  const float nothing = 0.0f;
+  h5_agree(ranks,
+           H5Dwrite(dataset, h5_type<float>(), memory, space, collective_transfer(ranks),
+                    layers > 0 ? values.data() : &nothing),
+           "write a dataset");
 }
 
 template H5Handle make_rows<double>(hid_t, const std::string&, std::int64_t, std::size_t);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -30,6 +31,7 @@ H5Handle create_file(const Communicator& ranks, const std::filesystem::path& fil
 /// Attributes of a group or dataset. Called alike by all ranks that have the file open.
 void write_text(hid_t place, const char* name, const std::string& text);
 void write_numbers(hid_t place, const char* name, const std::vector<std::int64_t>& values);
+void write_reals(hid_t place, const char* name, const std::vector<double>& values);
 void write_number(hid_t place, const char* name, std::int64_t value);
 
 /// Selects rows start[0] ... start[0] + count[0] - 1 for a transfer, nothing when there are none.
@@ -53,5 +55,13 @@ void write_rows_at(const Communicator& ranks, hid_t dataset, std::int64_t first,
 template <class Number>
 H5Handle write_rows(const Communicator& ranks, hid_t group, const std::string& name,
                     const std::vector<Number>& values, std::size_t width);
+
+/// Writes layers of cells, those of all ranks one after the other, as one dataset of the extents
+/// z, y, x and, with a width over 0, components.
+/// @param values whole layers of this rank; may be empty
+/// @throws StorageError on every rank. Collective.
+void write_layers(const Communicator& ranks, hid_t group, const std::string& name,
+                  const std::vector<float>& values, const std::array<std::int64_t, 3>& cells,
+                  std::size_t width);
 
 }  // namespace grouser

@@ -50,6 +50,13 @@ void write_single(const Communicator& ranks, hid_t group, const char* name, std:
              ranks.rank() == 0 ? std::vector<std::int64_t>{value} : std::vector<std::int64_t>{}, 0);
 }
 
+void write_time(const Communicator& ranks, hid_t root, double time) {
+  H5Handle whole(H5Gcreate2(root, "FieldData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
+                 "make group FieldData");
+  write_rows(ranks, whole, "time [s]",
+             ranks.rank() == 0 ? std::vector<double>{time} : std::vector<double>{}, 0);
+}
+
 void write_datasets(const Communicator& ranks, hid_t h5, const VtkGrid& grid) {
   const Cells cells = cells_of(ranks, grid);
   H5Handle root(H5Gcreate2(h5, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
@@ -69,13 +76,27 @@ void write_datasets(const Communicator& ranks, hid_t h5, const VtkGrid& grid) {
   if (total(grid.ids.size()) > 0) write_rows(ranks, values, "id", grid.ids, 0);
   for (const VtkField& field : grid.fields)
     write_rows(ranks, values, field.name, field.values, field.width);
-  H5Handle whole(H5Gcreate2(root, "FieldData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
-                 "make group FieldData");
-  write_rows(ranks, whole, "time [s]",
-             ranks.rank() == 0 ? std::vector<double>{grid.time} : std::vector<double>{}, 0);
+  write_time(ranks, root, grid.time);
 }
 
-void write_grid(const Communicator& ranks, const fs::path& file, const VtkGrid& grid) {
+void write_datasets(const Communicator& ranks, hid_t h5, const VtkImage& image) {
+  H5Handle root(H5Gcreate2(h5, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
+                "make group VTKHDF");
+  write_numbers(root, "Version", {1, 0});
+  write_text(root, "Type", "ImageData");
+  write_numbers(root, "WholeExtent", {0, image.cells[0], 0, image.cells[1], 0, image.cells[2]});
+  write_reals(root, "Origin", {0.0, 0.0, 0.0});
+  write_reals(root, "Spacing", {image.spacing, image.spacing, image.spacing});
+  write_reals(root, "Direction", {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0});
+  H5Handle values(H5Gcreate2(root, "CellData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
+                  "make group CellData");
+  for (const VtkField& field : image.fields)
+    write_layers(ranks, values, field.name, field.values, image.cells, field.width);
+  write_time(ranks, root, image.time);
+}
+
+template <class Grid>
+void write_grid(const Communicator& ranks, const fs::path& file, const Grid& grid) {
   H5Handle h5 = create_file(ranks, file, true);
   write_datasets(ranks, h5, grid);
   h5.close("finish " + file.string());
@@ -89,9 +110,14 @@ std::uintmax_t bytes_of(const VtkGrid& grid) {
          (grid.ids.size() + cells * (grid.has_triangles ? 4 : 2)) * sizeof(std::int64_t) + cells;
 }
 
-}  // namespace
+std::uintmax_t bytes_of(const VtkImage& image) {
+  std::size_t floats = 0;
+  for (const VtkField& field : image.fields) floats += field.values.size();
+  return floats * sizeof(float);
+}
 
-void write_vtkhdf(const Communicator& ranks, const fs::path& file, const VtkGrid& grid) {
+template <class Grid>
+void write_file(const Communicator& ranks, const fs::path& file, const Grid& grid) {
   const auto bytes =
       static_cast<std::uintmax_t>(ranks.sum(static_cast<std::int64_t>(bytes_of(grid))));
   fs::path part = file;
@@ -111,6 +137,16 @@ void write_vtkhdf(const Communicator& ranks, const fs::path& file, const VtkGrid
     fs::remove(part, ignored);
     throw StorageError("snapshot " + file.string() + " could not be written: " + failure);
   });
+}
+
+}  // namespace
+
+void write_vtkhdf(const Communicator& ranks, const fs::path& file, const VtkGrid& grid) {
+  write_file(ranks, file, grid);
+}
+
+void write_vtkhdf(const Communicator& ranks, const fs::path& file, const VtkImage& image) {
+  write_file(ranks, file, image);
 }
 
 }  // namespace grouser

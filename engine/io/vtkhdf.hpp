@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -26,6 +27,20 @@ struct VtkGrid {
   bool has_triangles = false;           ///< else every point is a cell of its own
   double time = 0.0;                    ///< simulated [s]
 };
+
+/// A box of cells with a value in each. Each rank holds whole layers of cells, those of rank 0
+/// first and each rank's by rising z; within, x runs fastest, then y.
+struct VtkImage {
+  std::array<std::int64_t, 3> cells{};  ///< along x, y and z, over all ranks
+  double spacing = 1.0;                 ///< side of a cell [m]
+  std::vector<VtkField> fields;         ///< per cell
+  double time = 0.0;                    ///< simulated [s]
+};
+
+/// Writes one image in VTKHDF 1.0, values as cell data, its low corner at the origin; as
+/// write_vtkhdf. Collective.
+void write_vtkhdf(const Communicator& ranks, const std::filesystem::path& file,
+                  const VtkImage& image);
 
 /// Writes one unstructured grid in VTKHDF 1.0 (VTK file formats, "VTKHDF"), which ParaView 5.10 and
 /// later open. The file appears under its name only when it is complete.

@@ -34,9 +34,9 @@ void AveragedFields::differentiate(const CellBlocks& blocks) {
           const std::int64_t global = (axis == 0 ? x : axis == 1 ? y : z) + blocks.low(axis);
           const std::int64_t low = global > 0 || blocks.periodic(axis) ? -1 : 0;
           const std::int64_t high = global + 1 < all || blocks.periodic(axis) ? 1 : 0;
-          this->at(to, x, y, z) = high == low ? 0.0
-                                              : (pressure(high) - pressure(low)) /
-                                                    static_cast<double>(high - low);
+          this->at(to, x, y, z) =
+              high == low ? 0.0
+                          : (pressure(high) - pressure(low)) / static_cast<double>(high - low);
         }
   }
 }
@@ -85,9 +85,8 @@ void AveragedFields::copy(int axis, std::int64_t layer, std::initializer_list<Fi
   const std::int64_t rows = axis == 1 ? box.nz : box.ny + 2;
   for (const Field field : fields)
     for (std::int64_t row = 0; row < rows; ++row, message += box.nx) {
-      double* const cells =
-          values_.of(field) +
-          (axis == 1 ? values_.at(0, layer, row) : values_.at(0, row - 1, layer));
+      double* const cells = values_.of(field) +
+                            (axis == 1 ? values_.at(0, layer, row) : values_.at(0, row - 1, layer));
       if (pack)
         std::copy(cells, cells + box.nx, message);
       else

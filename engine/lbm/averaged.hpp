@@ -14,14 +14,14 @@ namespace grouser {
 /// The flow solves, with the void fraction n, the fluid's velocity u between grains, and
 /// p = (density - 1)/3,
 ///
-///     dp/dt 3 + div(n u) = source           source = -dn/dt, so that what grains leave, fluid fills
-///     d(n u)/dt + div(n u u) = -grad p + viscosity x lap(n u) + push - drag x u
+///     dp/dt 3 + div(n u) = source           source = -dn/dt, so that what grains leave, fluid
+///     fills d(n u)/dt + div(n u u) = -grad p + viscosity x lap(n u) + push - drag x u
 ///
 /// which is model B of the exchange of momentum; with a pressure force on grains, and its opposite
 /// in the push, it is model A. Momentum of a cell is n u, that of its populations. The equilibrium
 /// is that of Guo and Zhao 2002 with the void fraction of the cell; drag is solved for within the
-/// step, so that no drag is too strong. Fluid at rest stays at rest whatever n. Neglected: change of
-/// the viscous stress by the void fraction beyond Brinkman's form; all of the order of the Mach
+/// step, so that no drag is too strong. Fluid at rest stays at rest whatever n. Neglected: change
+/// of the viscous stress by the void fraction beyond Brinkman's form; all of the order of the Mach
 /// number squared.
 class AveragedFields {
  public:

@@ -51,6 +51,26 @@ int CellBlocks::owner_of(std::int64_t key) const {
   return at[2] * blocks_[1] + at[1];
 }
 
+std::vector<int> CellBlocks::owners_within(const Vec3& at, double reach) const {
+  const double centre[3] = {at.x, at.y, at.z};
+  const auto is_near = [&](std::size_t axis, int block) {
+    const auto low = static_cast<double>(first_key(cells_[axis], blocks_[axis], block));
+    const auto high = static_cast<double>(first_key(cells_[axis], blocks_[axis], block + 1) - 1);
+    const auto period = static_cast<double>(cells_[axis]);
+    for (const double shift : {0.0, period, -period}) {
+      if (shift != 0.0 && !periodic_[axis]) continue;
+      if (centre[axis] + shift + reach >= low && centre[axis] + shift - reach <= high) return true;
+    }
+    return false;
+  };
+  std::vector<int> ranks;
+  if (!is_near(0, 0)) return ranks;
+  for (int z = 0; z < blocks_[2]; ++z)
+    for (int y = 0; is_near(2, z) && y < blocks_[1]; ++y)
+      if (is_near(1, y)) ranks.push_back(z * blocks_[1] + y);
+  return ranks;
+}
+
 int CellBlocks::neighbour(int axis, int side) const {
   const auto a = static_cast<std::size_t>(axis);
   std::array<int, 3> at = at_;

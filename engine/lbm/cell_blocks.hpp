@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
+#include "base/vec3.hpp"
 #include "engine/core/communicator.hpp"
 
 namespace grouser {
@@ -38,6 +40,9 @@ class CellBlocks {
     return (z * cells_[1] + y) * cells_[0] + x;
   }
   int owner_of(std::int64_t key) const;
+  /// Ranks with cells within `reach` along every axis of a point or of its images beyond periodic
+  /// ends, each once, by number. Local.
+  std::vector<int> owners_within(const Vec3& at, double reach) const;
 
  private:
   CellCounts cells_;

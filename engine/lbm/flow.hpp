@@ -12,6 +12,7 @@
 #include "engine/lbm/averaged.hpp"
 #include "engine/lbm/cell_blocks.hpp"
 #include "engine/lbm/collision.hpp"
+#include "engine/lbm/immersed.hpp"
 
 namespace grouser {
 
@@ -115,6 +116,17 @@ class Flow : public Stateful {
   /// of the momentum n u. Moving walls and open faces are for cells without grains.
   /// @throws ConfigError but for D3Q19 with bgk or trt in double precision. Local.
   virtual AveragedFields& average() = 0;
+
+  /// Puts solids into the fluid in place of those before; they stay until the next call, as they
+  /// are. Each rank names all that may cover its cells, and others as it likes. What they are given
+  /// is momentum exchange of the immersed moving boundary; the fluid inside them is fluid.
+  /// @throws ConfigError on a flat lattice. Local.
+  virtual void immerse(const std::vector<ImmersedBall>& balls,
+                       const std::vector<ImmersedBody>& bodies) = 0;
+  void immerse(const std::vector<ImmersedBall>& balls) { immerse(balls, {}); }
+  /// What the fluid gave each of them in this rank's cells in the last step: balls, then bodies.
+  /// Local.
+  virtual const std::vector<ImmersedLoad>& immersed_loads() const = 0;
 
   virtual const CellBlocks& blocks() const = 0;
   virtual std::int64_t steps() const = 0;

@@ -28,6 +28,7 @@ class FlowOf final : public Flow {
         streaming_(box_, blocks_.periodic(0)),
         halo_(ranks, blocks_),
         solids_(settings, blocks_, box_),
+        immersed_(blocks_, box_, settings.parameters.viscosity_lu),
         walls_(settings, blocks_, solids_, box_),
         open_(settings, blocks_, solids_, box_) {
     const auto add_rows = [&](bool outer) {
@@ -44,6 +45,7 @@ class FlowOf final : public Flow {
     const Parity due = streaming_.parity();
     const Parity next = due == Parity::kEven ? Parity::kOdd : Parity::kEven;
     if (due == Parity::kEven) quieten_dead_cells();
+    immersed_.clear_loads();
     // Rows next to faces first: what they sent travels while the others are swept.
     sweep_part(0, outer_rows_);
     const std::size_t inner = rows_.size() - outer_rows_;
@@ -153,10 +155,18 @@ class FlowOf final : public Flow {
                                "take D3Q19 with trt in double precision"}});
   }
 
+  void immerse(const std::vector<ImmersedBall>& balls,
+               const std::vector<ImmersedBody>& bodies) override {
+    if (Set::kDimensions != 3 && !(balls.empty() && bodies.empty()))
+      throw ConfigError({Problem{"", 0, 0, "lattice", "is flat and holds no solids", "D3Q19"}});
+    immersed_.immerse(balls, bodies);
+  }
+  const std::vector<ImmersedLoad>& immersed_loads() const override { return immersed_.loads(); }
+
   const CellBlocks& blocks() const override { return blocks_; }
   std::int64_t steps() const override { return steps_; }
   std::size_t bytes() const override {
-    return streaming_.populations().bytes() + solids_.bytes() + walls_.bytes() +
+    return streaming_.populations().bytes() + solids_.bytes() + walls_.bytes() + immersed_.bytes() +
            rows_.capacity() * sizeof(Row) + spans_.capacity() * sizeof(Span) +
            (averaged_ ? averaged_->bytes() : 0);
   }
@@ -233,6 +243,12 @@ class FlowOf final : public Flow {
         return;
       }
     }
+    if constexpr (Set::kDimensions == 3) {
+      if (!immersed_.empty()) {
+        sweep_immersed_rows<Set, Real>(streaming_, collision_, force_, range, solids_, immersed_);
+        return;
+      }
+    }
     sweep_rows<Set, Real>(streaming_, collision_, force_, range);
   }
 
@@ -256,6 +272,7 @@ class FlowOf final : public Flow {
   Streaming<Set, Real> streaming_;
   Halo halo_;
   SolidMap solids_;
+  ImmersedRows<Real> immersed_;
   WallLinks<Set, Real> walls_;
   OpenFaces<Set, Real> open_;
   std::unique_ptr<AveragedFields> averaged_;

@@ -14,7 +14,8 @@ template <class Set>
                                            const Vec3& force, double* const* fields,
                                            std::ptrdiff_t at) {
   using Fields = AveragedFields;
-  const auto field = [&](std::size_t which) GROUSER_INLINE { return load_wide(fields[which] + at); };
+  const auto field = [&](std::size_t which)
+                         GROUSER_INLINE { return load_wide(fields[which] + at); };
   NodeMoments<Set, Number> m = moments_of<false, Set>(f, Vec3{});
   const Vec3T<Number> push{field(Fields::kPushX) + force.x, field(Fields::kPushY) + force.y,
                            field(Fields::kPushZ) + force.z};

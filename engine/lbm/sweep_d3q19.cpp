@@ -8,4 +8,12 @@ template void sweep_rows<D3Q19, double>(Streaming<D3Q19, double>&, const Collisi
 template void sweep_rows<D3Q19, float>(Streaming<D3Q19, float>&, const Collision<float>&,
                                        const Vec3&, const SweepRange&);
 
+template void sweep_immersed_rows<D3Q19, double>(Streaming<D3Q19, double>&,
+                                                 const Collision<double>&, const Vec3&,
+                                                 const SweepRange&, const SolidMap&,
+                                                 ImmersedRows<double>&);
+template void sweep_immersed_rows<D3Q19, float>(Streaming<D3Q19, float>&, const Collision<float>&,
+                                                const Vec3&, const SweepRange&, const SolidMap&,
+                                                ImmersedRows<float>&);
+
 }  // namespace grouser

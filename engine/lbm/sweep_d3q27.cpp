@@ -8,4 +8,12 @@ template void sweep_rows<D3Q27, double>(Streaming<D3Q27, double>&, const Collisi
 template void sweep_rows<D3Q27, float>(Streaming<D3Q27, float>&, const Collision<float>&,
                                        const Vec3&, const SweepRange&);
 
+template void sweep_immersed_rows<D3Q27, double>(Streaming<D3Q27, double>&,
+                                                 const Collision<double>&, const Vec3&,
+                                                 const SweepRange&, const SolidMap&,
+                                                 ImmersedRows<double>&);
+template void sweep_immersed_rows<D3Q27, float>(Streaming<D3Q27, float>&, const Collision<float>&,
+                                                const Vec3&, const SweepRange&, const SolidMap&,
+                                                ImmersedRows<float>&);
+
 }  // namespace grouser

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/lbm/immersed_rows.hpp"
 #include "engine/lbm/streaming.hpp"
 
 namespace grouser {
@@ -10,5 +11,11 @@ namespace grouser {
 template <class Set, class Real>
 void sweep_rows(Streaming<Set, Real>& streaming, const Collision<Real>& collision,
                 const Vec3& force, const SweepRange& range);
+
+/// The same with solids in the fluid. Not for flat lattices. Local.
+template <class Set, class Real>
+void sweep_immersed_rows(Streaming<Set, Real>& streaming, const Collision<Real>& collision,
+                         const Vec3& force, const SweepRange& range, const SolidMap& map,
+                         ImmersedRows<Real>& solids);
 
 }  // namespace grouser

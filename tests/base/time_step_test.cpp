@@ -55,7 +55,7 @@ TEST(Collision, LastsAndPressesAsAnIntegratedHertzContactDoes) {
   for (const double speed : {0.01, 0.5, 3.0}) {
     Case input = wheel_case();
     input.wheel.forward_speed = 0.5 * speed;  // forward and rim speed add up
-    const Collision collision = shortest_collision(input);
+    const Impact collision = shortest_collision(input);
     EXPECT_DOUBLE_EQ(collision.speed, speed);
     EXPECT_EQ(collision.pair, "two grains");
     const double r = 5e-3;

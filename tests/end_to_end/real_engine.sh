@@ -6,7 +6,7 @@
 # one rank alone), manager (killed in mid-submission, and the engines with it), full_disk, truncated,
 # broken (overlap, NaN, lost grain), signals (SIGTERM and SIGUSR1, to ranks and to mpirun),
 # snapshots (VTK's own reader opens them), fluid (placed grains with a history and a track, cut and
-# moved between ranks).
+# moved between ranks), lattice (spheres in fluid on a lattice, killed and moved between ranks).
 set -euo pipefail
 reader=$(realpath -- "$(dirname -- "${BASH_SOURCE[0]}")/read_vtkhdf.py")
 scenario=$1 grouser=$(realpath -- "$2") engine=$(realpath -- "$3")
@@ -479,6 +479,68 @@ fluid() {
     expect_same "cut-$ranks" "fluid cut on $ranks ranks, continued on $((3 - ranks % 3))"
     cmp "cut-$ranks/track.csv" straight/track.csv || fail "the track differs"
   done
+}
+
+# Three spheres on a lattice of cells, which has cuts of its own between ranks.
+lattice_run() {  # DIR
+  mkdir -p "$1"
+  cat >"$1/case.yaml" <<'YAML'
+box: {length: 24 mm, width: 24 mm, depth: 32 mm, solid: {young_modulus: 2 MPa}}
+placed:
+  duration: 0.12 s
+  grains:
+    - {diameter: 8 mm, x: 7 mm, y: 8 mm, z: 12 mm, velocity_z: -5 cm/s}
+    - {diameter: 7 mm, x: 16 mm, y: 9 mm, z: 20 mm, spin_y: 10 rad/s}
+    - {diameter: 6 mm, x: 12 mm, y: 18 mm, z: 26 mm}
+grains: {density: 2500 kg/m3, solid: {young_modulus: 2 MPa}}
+contact:
+  grain_grain: {restitution: 0.8, friction: 0.3}
+  grain_box: {restitution: 0.8, friction: 0.3}
+fluid:
+  mode: resolved
+  density: 1000 kg/m3
+  viscosity: 50 mPa s
+  lattice: {cell: 1 mm, speed: 0.15 m/s, mach: 0.1, faces: {z_high: {kind: slip}}}
+output: {series_interval: 2 ms, checkpoint_interval: 10 ms, snapshot_interval: 50 ms,
+         track: {grain: 1, interval: 2 ms}}
+YAML
+}
+
+lattice() {
+  local ranks at file seen
+  lattice_run straight
+  launch 1 straight
+  [ "$code" = 0 ] || fail "undisturbed run ended with $code: $(tail -n 3 straight/log)"
+  expected=$(hash_of)
+  grep -q 'app lattice of 24 x 24 x 32 cells of 0.001 m, .*Mach number' straight/log ||
+    fail "the log does not tell of the lattice: $(cat straight/log)"
+  for ranks in 1 2 3 4; do
+    lattice_run "killed-$ranks"
+    disturb "kill_all 'killed-$ranks'" "$ranks" "killed-$ranks"
+    [ "$code" = 137 ] || fail "the engine was not killed on $ranks ranks, it ended with $code"
+    at=$(newest_step "killed-$ranks")
+    launch $((5 - ranks)) "killed-$ranks" --until-time 0.0913
+    [ "$code" = 10 ] || fail "the chunk ended with $code: $(tail -n 3 "killed-$ranks/log")"
+    expect_continued "killed-$ranks" "$at"
+    launch 1 "killed-$ranks" --restart required
+    expect_same "killed-$ranks" "lattice killed on $ranks ranks, continued on $((5 - ranks))"
+    cmp "killed-$ranks/track.csv" straight/track.csv || fail "the track differs"
+    for file in straight/snapshots/*.vtkhdf; do
+      h5diff "$file" "killed-$ranks/snapshots/$(basename "$file")" || fail "$file differs"
+    done
+  done
+  file=$(ls straight/snapshots/fluid_*.vtkhdf | tail -n 1)
+  seen=$(/usr/bin/python3 "$reader" "$file" 11 'cell:velocity [m s-1]' 'cell:pressure [Pa]') ||
+    fail "$seen"
+  [ "${seen#* }" = "18432 0 0.024 0 0.024 0 0.032" ] || fail "$file has points and cells: $seen"
+  # Far over the speed that the lattice was made for the run breaks, and keeps what was good.
+  lattice_run fast
+  sed -i 's/speed: 0.15 m\/s, mach: 0.1/relaxation_time: 0.502, collision: bgk/
+    s/duration: 0.12 s/duration: 4 s/; s/2500 kg/20000 kg/; s/viscosity: 50 mPa s/viscosity: 0.5 mPa s/' fast/case.yaml
+  launch 2 fast
+  [ "$code" = 30 ] || fail "a fluid that breaks down ended with $code instead of 30: $(tail -n 3 fast/log)"
+  echo "ended cleanly:$(sed -n 's/.*"reason"://p' "$outcome")"
+  [ "$(newest_step fast)" -gt 0 ] || fail "the broken run has no checkpoint"
 }
 
 "$scenario"

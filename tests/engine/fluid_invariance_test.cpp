@@ -39,7 +39,7 @@ class Sediment {
   }
   void run(int steps) {
     for (int i = 0; i < steps; ++i) {
-      if (outer_) outer_->announce(0.0, false);
+      if (outer_) outer_->announce(0, 0.0, false);
       ASSERT_EQ(world_.step().fault, Fault::kNone);
     }
   }

@@ -319,7 +319,7 @@ double bounce(double viscosity, double amplitude) {
   world.add_particle(grain);
   double before = 0.0;
   for (int i = 0; i < 20000; ++i) {
-    outer.announce(i * 1e-6, false);
+    outer.announce(i, i * 1e-6, false);
     world.step();
     const Particle& p = world.particles()[0];
     before = std::max(before, -p.velocity.z);

@@ -37,7 +37,7 @@ class OneGrain {
 
   /// A step. @return how the grain moved in its middle, which is at time() before the call
   TrackRow step() {
-    outer_->announce(time(), true);
+    outer_->announce(steps_, time(), true);
     world_.step();
     ++steps_;
     return *outer_->take_row();

@@ -96,7 +96,8 @@ TEST(VolumeAveragedFlow, WithoutGrainsIsThePlainOneBitForBit) {
   averaged->average();
   for (const auto& flow : {plain.get(), averaged.get()})
     flow->set_equilibrium([](const Vec3& p) {
-      return FlowNode{1.0 + 0.01 * std::sin(p.x), {0.02 * std::cos(p.y), 0.01 * std::sin(p.z), 0.0}};
+      return FlowNode{1.0 + 0.01 * std::sin(p.x),
+                      {0.02 * std::cos(p.y), 0.01 * std::sin(p.z), 0.0}};
     });
   for (int i = 0; i < 31; ++i) {
     plain->step();
