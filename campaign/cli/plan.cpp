@@ -3,6 +3,7 @@
 #include <iostream>
 #include <memory>
 
+#include "base/lattice_units.hpp"
 #include "base/time_step.hpp"
 #include "campaign/cli/exit_codes.hpp"
 #include "campaign/cli/find.hpp"
@@ -46,7 +47,8 @@ std::string step_lines(const Plan& plan) {
   std::vector<std::string> seen;
   std::string text;
   for (const PlannedRun& run : plan.runs) {
-    const std::string line = time_step_text(run.input);
+    std::string line = time_step_text(run.input);
+    if (has_lattice(run.input)) line += "\n  " + lattice_text(run.input);
     if (std::find(seen.begin(), seen.end(), line) != seen.end()) continue;
     if (seen.size() == kShown) return text + "...\n";
     seen.push_back(line);

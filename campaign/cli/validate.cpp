@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <set>
 
+#include "base/lattice_units.hpp"
 #include "campaign/cli/exit_codes.hpp"
 #include "campaign/cli/find.hpp"
 #include "campaign/cli/verbs.hpp"
@@ -25,6 +27,12 @@ void add_validate(CLI::App& app, int& code) {
     });
     std::cout << options->file << ": good; " << plan.runs.size() - static_cast<std::size_t>(beds)
               << " runs on " << beds << " beds\n";
+    // Each distinct lattice once, after the first run that has it.
+    std::set<std::string> seen;
+    for (const PlannedRun& run : plan.runs)
+      if (has_lattice(run.input))
+        if (const std::string text = lattice_text(run.input); seen.insert(text).second)
+          std::cout << run.label << ": " << text << "\n";
     code = exit_codes::kOk;
   });
 }
