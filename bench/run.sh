@@ -4,7 +4,7 @@
 #   bench/run.sh dem [--json FILE] [--quick]
 #   bench/run.sh lbm [--json FILE] [--cells N] [--rounds N] [--others]
 #   bench/run.sh coupled [--json FILE] [--cells N] [--rounds N]
-#   bench/run.sh scaling [--json FILE] [--ranks N,N,...] [--svg FILE]
+#   bench/run.sh scaling [--json FILE] [--ranks N,N,...] [--part N] [--svg FILE]
 #   bench/run.sh reliability [--json FILE] [--manager-kills N] [--engine-kills N] [--no-space N]
 #   bench/run.sh campaign [--json FILE] [--runs N] [--chunks N] [--active N]
 # reliability: kills managers and engines, fills disks; campaign: the manager on 10 000 runs.

@@ -19,6 +19,14 @@ struct ScalingBed {
   double skin = 0.1619e-3;           ///< a tenth of the mean diameter, as the engine takes it [m]
   double contact_length = 1.65e-3;   ///< mean distance of the centres of a pair [m]
 
+  /// A `count`th of it along x, for as many fewer ranks with the same share each.
+  ScalingBed part(int count) const {
+    ScalingBed bed = *this;
+    bed.count_x = count_x / count;
+    bed.high.x *= 1.0 * bed.count_x / count_x;
+    return bed;
+  }
+
   double grains() const { return 1.0 * count_x * count_y * count_z; }
   double reach() const { return 2.0 * largest_radius + skin; }
 };

@@ -8,7 +8,6 @@ PARTS = [  # of a step, from the bottom up
     ("agree", "agreeing, waiting", "#e45756"),
     ("rebuild", "lists of ghosts, migration", "#b79a20"),
 ]
-LABELS = {"tiles": "8 x 8 a node", "published speed": "0.448 M/s", "threads": "of 8 cores"}
 WIDTH, HEIGHT, LEFT, TOP, BOTTOM = 900, 420, 60, 20, 60
 LEGEND = 290
 
@@ -16,11 +15,11 @@ LEGEND = 290
 def shares(point):
     """Parts of a step's time, summing up to 1."""
     step = point["time_per_step"]
-    alone = point["efficiency"]
-    lists_alone = alone * step - point["ideal"]
+    cores = point["ranks"] * point["cores"]
+    lists_alone = point["alone"] - point["grains"] / cores * point["step_cost"]
     return {
-        "alone": alone,
-        "twice": (point["compute"] - point["ideal"]) / step,
+        "alone": point["efficiency"],
+        "twice": point["twice"] / step,
         "halo": point["halo"] / step,
         "agree": point["agree"] / step,
         "rebuild": (point["rebuild_share"] - lists_alone) / step,
@@ -51,10 +50,10 @@ def efficiency_plot(points):
         out.append(f'<text x="{middle:.1f}" y="{bottom - tall * parts["alone"] + 16:.1f}" '
                    f'text-anchor="middle" fill="white">{100 * parts["alone"]:.0f}</text>')
         out.append(f'<text x="{middle:.1f}" y="{bottom + 17}" text-anchor="middle">'
-                   f'{point["ranks"]}</text>')
-        if point["case"] in LABELS:
+                   f'{point["ranks"] * point["part"]}</text>')
+        if point["part"] > 1:
             out.append(f'<text x="{middle:.1f}" y="{bottom + 32}" text-anchor="middle" '
-                       f'font-size="9">{LABELS[point["case"]]}</text>')
+                       f'font-size="9">by 1/{point["part"]}</text>')
     y = bottom - tall * 0.9
     out.append(f'<path d="M{LEFT} {y:.1f}H{WIDTH - LEGEND}" stroke="black" '
                f'stroke-dasharray="5 4"/>')

@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Strong scaling of the engine's messages on simulated ranks; see docs/performance/scaling.md.
 
-  run.py DRIVER [--json FILE] [--ranks N,N,...] [--svg FILE]
+  run.py DRIVER [--json FILE] [--ranks N,N,...] [--part N] [--svg FILE]
+
+--part 8: an eighth of the bed along x; 384 ranks then have the shares that 3 072 have of all of it.
 
 Prints a table. DRIVER is scaling_driver as built by bench/run.sh.
 """
@@ -34,13 +36,13 @@ OPTIONS = [
 ]
 
 
-def simulate(driver, ranks, step, lists, cores, overlaps):
+def simulate(driver, ranks, step, lists, cores, overlaps, part):
     with tempfile.TemporaryDirectory() as folder:
         hosts = pathlib.Path(folder) / "hosts"
         hosts.write_text("".join(f"node-{rank * cores // CORES}\n" for rank in range(ranks)))
         command = ["smpirun", "-no-privatize", "-np", str(ranks), "-hostfile", str(hosts),
                    "-platform", str(HERE / "platform.xml"), *OPTIONS, str(driver), "steps",
-                   str(step), str(lists), str(cores), str(int(overlaps))]
+                   str(step), str(lists), str(cores), str(int(overlaps)), str(part)]
         done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, text=True, check=False)
     lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
     if done.returncode != 0 or not lines:
@@ -78,15 +80,17 @@ def main():
     parser.add_argument("driver", type=pathlib.Path)
     parser.add_argument("--json", type=pathlib.Path)
     parser.add_argument("--svg", type=pathlib.Path)
+    parser.add_argument("--part", type=int, default=1)
     parser.add_argument("--ranks", default="64,128,256,512,1024,2048,3072,4096")
     options = parser.parse_args()
     driver = options.driver.resolve()
     points = []
 
-    def run(name, ranks, cores=1, overlaps=False):
-        point = simulate(driver, ranks, STEP, LISTS, cores, overlaps)
+    def run(ranks, cores=1):
+        share = GRAINS / options.part / ranks
+        point = simulate(driver, ranks, STEP, LISTS, cores, share <= FEW_GRAINS, options.part)
         finish(point)
-        point["case"] = name
+        point["part"] = options.part
         points.append(point)
         print(table_row(point), flush=True)
         if options.json:
@@ -94,7 +98,7 @@ def main():
 
     print(f"{HEAD}\n|{'---|' * 10}")
     for ranks in (int(word) for word in options.ranks.split(",")):
-        run("plain", ranks, overlaps=GRAINS / ranks <= FEW_GRAINS)
+        run(ranks)
     if options.svg:
         options.svg.write_text(efficiency_plot(points))
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One point of a scaling curve on simulated ranks; see docs/performance/scaling.md. Built by
 // smpicxx and started by bench/scaling/run.py:
-//   scaling_driver steps STEP LISTS CORES OVERLAP
+//   scaling_driver steps STEP LISTS CORES OVERLAP PART
 //     STEP     seconds of a core for a particle-step
 //     LISTS    seconds of a core for the new lists of a grain or ghost
 //     CORES    of each rank, among which its particle-steps and lists are divided evenly
 //     OVERLAP  1 when pairs without ghosts are evaluated while ghosts are under way, else 0
+//     PART     a PARTth of the bed along x
 //   scaling_driver packing   real times of a halo's renewal and making; on two ranks
 #include <algorithm>
 #include <chrono>
@@ -36,6 +37,7 @@ struct Costs {
   double lists;
   int cores;
   bool overlaps;
+  int part;
 };
 
 struct Phases {
@@ -74,8 +76,9 @@ double done_twice(const ScalingBed& bed, const Box& box) {
 
 // One rank of the engine, as World has it.
 struct Rank {
-  explicit Rank(const Communicator& all)
+  explicit Rank(const Communicator& all, int part = 1)
       : ranks(all),
+        bed(ScalingBed{}.part(part)),
         boxes(Decomposition::even({}, bed.high, all.size())),
         neighbours(boxes.neighbours(all.rank(), bed.reach())),
         share(bed_share(bed, boxes, all.rank())),
@@ -122,7 +125,7 @@ double mean(const Communicator& ranks, double value) {
 }
 
 void run_steps(const Communicator& ranks, const Costs& costs) {
-  Rank rank(ranks);
+  Rank rank(ranks, costs.part);
   ranks.barrier();
   Phases time;
   rank.rebuild(time);
@@ -225,11 +228,11 @@ int main(int argc, char** argv) {
   const grouser::Communicator ranks;
   if (argc == 2 && std::strcmp(argv[1], "packing") == 0) {
     grouser::bench::measure_packing(ranks);
-  } else if (argc == 6 && std::strcmp(argv[1], "steps") == 0) {
+  } else if (argc == 7 && std::strcmp(argv[1], "steps") == 0) {
     grouser::bench::run_steps(ranks, {std::atof(argv[2]), std::atof(argv[3]), std::atoi(argv[4]),
-                                      std::atoi(argv[5]) != 0});
+                                      std::atoi(argv[5]) != 0, std::atoi(argv[6])});
   } else {
-    std::fputs("scaling_driver: steps STEP LISTS CORES OVERLAP, or packing\n", stderr);
+    std::fputs("scaling_driver: steps STEP LISTS CORES OVERLAP PART, or packing\n", stderr);
     return 2;
   }
   return 0;
