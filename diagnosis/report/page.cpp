@@ -33,6 +33,11 @@ std::string card(const std::string& heading, const std::string& body, const char
          "</h3></header>\n" + body + "</figure>\n";
 }
 
+std::string odds_of(double probability) {
+  if (probability > 0.999) return "over 99.9 %";
+  return probability < 1e-3 ? "under 0.1 %" : rounded(100.0 * probability) + " %";
+}
+
 std::string title_of(const std::string& id) {
   const Hypothesis* const h = find_hypothesis(id.c_str());
   if (h != nullptr) return h->title;
@@ -110,8 +115,7 @@ std::string odds_section(const Diagnosis& d) {
     const bool is_always = c.id == "baseline" || c.id == "unknown";
     if (!is_always && (c.probability < 1e-3 || shown >= 8)) continue;
     ++shown;
-    table.row({escape_html(title_of(c.id)), word_of(c.family),
-               rounded(100.0 * c.probability) + " %",
+    table.row({escape_html(title_of(c.id)), word_of(c.family), odds_of(c.probability),
                "<span class=\"odds\" style=\"width:" + coordinate(12.0 * c.probability) +
                    "rem\"></span>"});
   }
