@@ -307,6 +307,23 @@ void ask_held_out(const SeriesRecording& recording, const Baseline& baseline, co
   d.flags.push_back("it predicts the held-out worse than the baseline does");
 }
 
+/// What makes any answer weaker, whatever it is.
+void warn_of_data(const SeriesRecording& recording, const Study& study, Diagnosis& d) {
+  if (d.fitted == 1)
+    d.flags.push_back("one fitted recording: what it cannot tell apart, nobody can by it");
+  for (std::size_t c = 0; c < recording.channels.size(); ++c)
+    for (const Observed& o : study.observed()) {
+      if (o.times.size() >= 32 || recording.channels[c].noise_sd > 0.0) continue;
+      d.flags.push_back(o.name + " has " + std::to_string(o.times.size()) +
+                        " samples and no stated noise, which is guessed");
+      if (d.word == Word::kNamed) d.word = Word::kProvisional;
+    }
+  for (const Finding& finding : d.findings)
+    if (finding.is_fault)
+      d.flags.push_back("the data say of " + finding.channel + " in " + finding.condition + ": " +
+                        finding.kind);
+}
+
 void describe_cause(const SeriesRecording& recording, const Study& study, Diagnosis& d) {
   d.set = set_of(d.candidates);
   const Candidate& best = d.candidates[0];
@@ -367,6 +384,7 @@ Diagnosis diagnose(const SeriesRecording& recording, const Baseline& baseline) {
   if (d.word == Word::kNamed || d.word == Word::kProvisional)
     ask_held_out(recording, baseline, study, d);
   describe_cause(recording, study, d);
+  warn_of_data(recording, study, d);
   const Candidate* const best = d.word == Word::kNoneOfTheKnown ? nullptr : d.best();
   if (d.word != Word::kNoMismatch) locate(study, d, best);
   if (best != nullptr) {

@@ -14,6 +14,7 @@ namespace {
 
 using Eigen::Index;
 
+constexpr double kLeastNoise = 1e-4;  // of the range
 constexpr double kLatentSpreads[] = {0.01, 0.05, 0.2};
 
 /// Whether the cause could act here and is not in the baseline already.
@@ -205,6 +206,9 @@ void estimate_noise(Study& study) {
       for (std::size_t i = 0; i < n; ++i)
         rest[i] = o.weights[c][i] * (o.samples[c][i] - predicted[c * n + i]);
       o.noise[c] = fit_noise(rest);
+      // Nobody's model is better than this, nor is a series without any noise a measured one.
+      const auto [low, high] = std::minmax_element(o.samples[c].begin(), o.samples[c].end());
+      o.noise[c].sd = std::max(o.noise[c].sd, kLeastNoise * (*high - *low));
       // More noise than four times what the recording says is a misfit in disguise.
       if (o.stated[c] > 0.0) o.noise[c].sd = std::min(o.noise[c].sd, 4.0 * o.stated[c]);
     }

@@ -65,7 +65,11 @@ Diagnosis diagnosis() {
   d.candidates = {cause};
   d.detection.draws = {1.0, 2.0, 3.0, 2.5};
   d.detection.cells = {{0, 0, 10, 20, 9.0}};
-  Location place{"A", {0.0, 0.5, 1.0}, {0.1, 1.0, 0.2}, {false, true, false}, {0.0, 0.1, 0.0},
+  Location place{"A",
+                 {0.0, 0.5, 1.0},
+                 {0.1, 1.0, 0.2},
+                 {false, true, false},
+                 {0.0, 0.1, 0.0},
                  {0.02, 0.02, 0.02}};
   d.locations = {place};
   return d;
@@ -80,8 +84,8 @@ TEST(DiagnosisPage, BeginsWithTheVerdictAndShowsWhatWasHeldOutBeforeAndAfter) {
   for (const char* const series : {"recorded", "before", "after", "noise", "latent", "null"})
     EXPECT_NE(page.find(std::string("data-series=\"") + series + "\""), std::string::npos)
         << series;
-  for (const char* const text : {"5 %", "pushed by 2.1", "release again in another way",
-                                 "where theory has 1"})
+  for (const char* const text :
+       {"5 %", "pushed by 2.1", "release again in another way", "where theory has 1"})
     EXPECT_NE(page.find(text), std::string::npos) << text;
 }
 

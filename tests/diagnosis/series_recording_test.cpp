@@ -112,6 +112,26 @@ TEST(SeriesRecording, AConditionWithoutAViscosityIsRefused) {
   EXPECT_EQ(problems_of(folder_with(yaml, "t,h", "50,95")).substr(0, 14), "recording.yaml");
 }
 
+TEST(SeriesRecording, AChannelThatNoModelProducesIsRefusedWithWhatThereIs) {
+  std::string yaml = yaml_with("mm");
+  yaml.replace(yaml.find("name: gap"), 9, "name: pull");
+  std::vector<Problem> problems;
+  read_series_recording(folder_with(yaml, "t,h", "50,95"), problems);
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_EQ(problems[0].line, 13);
+  EXPECT_NE(problems[0].text().find("gap"), std::string::npos) << problems[0].text();
+}
+
+TEST(SeriesRecording, ConditionsThatContradictThemselvesAreRefused) {
+  std::string yaml = yaml_with("mm");
+  const std::string value = "{name: viscosity, value: \"0.1 Pa s\", uncertainty: \"0.01 Pa s\"}";
+  yaml.replace(yaml.find(value), value.size(), value + ", {name: viscosity, value: 0.2 Pa s}");
+  std::vector<Problem> problems;
+  read_series_recording(folder_with(yaml, "t,h", "50,95"), problems);
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_NE(problems[0].text().find("gives a value twice"), std::string::npos);
+}
+
 TEST(SeriesRecording, AllCommittedOnesAreSound) {
   int count = 0;
   for (const auto& entry :
