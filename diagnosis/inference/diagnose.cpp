@@ -22,8 +22,9 @@ constexpr double kCheckLevel = 2e-3;  // below, a cause does not explain all
 /// together bend almost anywhere.
 const double kPairOdds = std::log(1000.0);
 const double kPairOverSingle = std::log(20.0);  // the same to the best single cause
-constexpr double kDoubt = 0.2;       // of the check, below which a second cause is looked for
-constexpr double kRefuted = 8.0;     // ln of the predictive density that held-out data may cost
+constexpr double kDoubt = 0.2;          // of the check, below which a second cause is looked for
+const double kProven = std::log(10.0);  // the same, that a named cause must gain
+constexpr double kRefuted = 8.0;        // ln of the predictive density that held-out data may cost
 constexpr double kRemainder = 0.01;  // of the misfit, that a cause may leave when nothing is better
 constexpr double kRival = 0.01;      // odds to the best from which on another cause is a rival
 constexpr double kTemper = 1.0;      // power of the evidence; 1 as no calibration says otherwise
@@ -287,6 +288,10 @@ void ask_held_out(const SeriesRecording& recording, const Baseline& baseline, co
     }
     if (refuted.empty()) {
       d.held_out = std::move(held);
+      if (!d.held_out.empty() && gain < std::max(kProven, d.held_out[0].placebo_gain)) {
+        d.word = Word::kProvisional;
+        d.flags.push_back("what was held out does not show it better than any other cause");
+      }
       return;
     }
     if (detect(study, c.fit, kDraws, 2).is_mismatch(kCheckLevel)) continue;
