@@ -6,7 +6,8 @@
 # one rank alone), manager (killed in mid-submission, and the engines with it), full_disk, truncated,
 # broken (overlap, NaN, lost grain), signals (SIGTERM and SIGUSR1, to ranks and to mpirun),
 # snapshots (VTK's own reader opens them), fluid (placed grains with a history and a track, cut and
-# moved between ranks), lattice (spheres in fluid on a lattice, killed and moved between ranks).
+# moved between ranks), lattice (spheres in fluid on a lattice, killed and moved between ranks), wet_wheel (bed and
+# wheel in a submerging fluid, cut and moved between ranks).
 set -euo pipefail
 reader=$(realpath -- "$(dirname -- "${BASH_SOURCE[0]}")/read_vtkhdf.py")
 scenario=$1 grouser=$(realpath -- "$2") engine=$(realpath -- "$3")
@@ -40,9 +41,11 @@ wheel_yaml() {
        'forward_speed: 0.5 m/s, travel: 6 cm, average_travel: 2 cm, drive: towed, start: 0.35}'
 }
 
+wet=  # fluid of the case, if any
 new_run() {  # DIR [wheel]
   mkdir -p "$1"
   case_yaml >"$1/case.yaml"
+  echo "$wet" >>"$1/case.yaml"
   [ "${2:-}" = wheel ] && wheel_yaml >>"$1/case.yaml"
   return 0
 }
@@ -541,6 +544,16 @@ lattice() {
   [ "$code" = 30 ] || fail "a fluid that breaks down ended with $code instead of 30: $(tail -n 3 fast/log)"
   echo "ended cleanly:$(sed -n 's/.*"reason"://p' "$outcome")"
   [ "$(newest_step fast)" -gt 0 ] || fail "the broken run has no checkpoint"
+}
+
+wet_wheel() {
+  wet='fluid: {density: 1000 kg/m3, viscosity: 10 mPa s, drag: {law: gidaspow}, void_fraction: 0.45}'
+  prepare
+  new_run cut wheel
+  launch 2 cut --bed bed --until-time 0.07
+  [ "$code" = 10 ] || fail "the first chunk ended with $code: $(tail -n 3 cut/log)"
+  launch 1 cut --bed bed --restart required
+  expect_same cut "bed and wheel in a fluid, cut on 2 ranks, continued on 1"
 }
 
 "$scenario"

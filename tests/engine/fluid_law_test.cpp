@@ -236,6 +236,18 @@ TYPED_TEST(EveryLubricationLaw, MeetsTheThinFilm) {
   EXPECT_NEAR((1.0 + TypeParam::excess(0.01)) / brenner_series(0.01), 1.0, 0.02);
 }
 
+TYPED_TEST(EveryLubricationLaw, OfTwoEqualSpheresIsAQuarterOfThatTowardsAWall) {
+  // Source: Kim, Karrila 1991: 6 pi mu a^2 b^2/(a + b)^2 / gap, so 6 pi mu a^2/(4 gap) for equal
+  // ones; the cutoff takes 2 % of it at a gap of 0.01 a.
+  const double a = 1e-3;
+  for (const double gap : {1e-6, 1e-5}) {
+    const double wanted = 6.0 * kPi * 1e-3 * a * a / (4.0 * gap);
+    EXPECT_NEAR(lubrication_coefficient<TypeParam>(kWater, 0.5 * a, gap, 1e-4, 1.0) / wanted, 1.0,
+                0.05)
+        << gap;
+  }
+}
+
 TYPED_TEST(EveryLubricationLaw, BeginsWithoutAStepAndEndsAtTheRoughness) {
   const auto at = [](double gap) {
     return lubrication_coefficient<TypeParam>(kWater, 1e-3, gap, 1e-3, 0.5);
