@@ -271,7 +271,8 @@ def no_space(args, work, bed, straight, calm, result):
     for at in stride(calls, args.no_space):
         code = start_engine(LD_PRELOAD=str(shim), NO_SPACE_AT=str(at))
         manifests = list((folder / "checkpoints").glob("*.json"))
-        sizes = all((file.with_suffix(".h5")).stat().st_size == json.loads(file.read_text())["bytes"]
+        sizes = all(file.with_suffix(".h5").exists() and
+                    file.with_suffix(".h5").stat().st_size == json.loads(file.read_text())["bytes"]
                     for file in manifests)
         again = run_engine(engine_command(args, folder, bed))
         good = code in (40, -signal.SIGABRT, 0) and sizes and again == 0
