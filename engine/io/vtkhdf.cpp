@@ -84,12 +84,15 @@ void write_datasets(const Communicator& ranks, hid_t h5, const VtkImage& image) 
                 "make group VTKHDF");
   write_numbers(root, "Version", {1, 0});
   write_text(root, "Type", "ImageData");
-  write_numbers(root, "WholeExtent", {0, image.cells[0], 0, image.cells[1], 0, image.cells[2]});
-  write_reals(root, "Origin", {0.0, 0.0, 0.0});
+  write_numbers(root, "WholeExtent",
+                {0, image.cells[0] - 1, 0, image.cells[1] - 1, 0, image.cells[2] - 1});
+  // Points, because VTK 9.1 reads cell data of images as if they were.
+  const double centre = 0.5 * image.spacing;
+  write_reals(root, "Origin", {centre, centre, centre});
   write_reals(root, "Spacing", {image.spacing, image.spacing, image.spacing});
   write_reals(root, "Direction", {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0});
-  H5Handle values(H5Gcreate2(root, "CellData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
-                  "make group CellData");
+  H5Handle values(H5Gcreate2(root, "PointData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
+                  "make group PointData");
   for (const VtkField& field : image.fields)
     write_layers(ranks, values, field.name, field.values, image.cells, field.width);
   write_time(ranks, root, image.time);

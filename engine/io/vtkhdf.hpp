@@ -37,7 +37,8 @@ struct VtkImage {
   double time = 0.0;                    ///< simulated [s]
 };
 
-/// Writes one image in VTKHDF 1.0, values as cell data, its low corner at the origin; as
+/// Writes one image in VTKHDF 1.0, a point at each cell's centre, the first half a cell from the
+/// origin; as
 /// write_vtkhdf. Collective.
 void write_vtkhdf(const Communicator& ranks, const std::filesystem::path& file,
                   const VtkImage& image);

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Opens a snapshot with VTK's own reader, which is ParaView's, and checks that it holds a scene.
 
-read_vtkhdf.py FILE CELL_TYPE [ARRAY...]: CELL_TYPE as VTK numbers them; ARRAYs must exist, at points or, with
-"cell:" before the name, in cells.
+read_vtkhdf.py FILE CELL_TYPE [ARRAY...]: CELL_TYPE as VTK numbers them; ARRAYs must exist.
 Prints: points cells xmin xmax ymin ymax zmin zmax
 """
 import sys
@@ -22,7 +21,6 @@ for cell in (0, grid.GetNumberOfCells() - 1):
     if grid.GetCellType(cell) != cell_type:
         sys.exit(f"{file}: cell {cell} has type {grid.GetCellType(cell)}")
 for name in arrays:
-    data = grid.GetCellData() if name.startswith("cell:") else grid.GetPointData()
-    if data.GetArray(name.removeprefix("cell:")) is None:
-        sys.exit(f"{file}: no data '{name}'")
+    if grid.GetPointData().GetArray(name) is None:
+        sys.exit(f"{file}: no point data '{name}'")
 print(grid.GetNumberOfPoints(), grid.GetNumberOfCells(), *(f"{x:.4g}" for x in grid.GetBounds()))
