@@ -153,6 +153,8 @@ void CheckpointStore::publish(const CheckpointManifest& manifest) {
 void CheckpointStore::discard(const CheckpointManifest& manifest) {
   if (ranks_.rank() == 0) {
     std::error_code ignored;
+    // The manifest may be there although making it durable failed: it must not outlive its file.
+    fs::remove((directory_ / manifest.file).replace_extension(".json"), ignored);
     fs::remove(directory_ / manifest.file, ignored);
   }
   ranks_.barrier();
