@@ -26,12 +26,6 @@ inline void store_quad(double* to, Quad quad) {
   *reinterpret_cast<Aliased*>(to) = quad;
 }
 
-/// Changes the sign of those numbers whose `signs` is -0.0.
-inline Quad flip_signs(Quad a, Quad signs) {
-  using Bits = std::int64_t __attribute__((vector_size(32)));
-  return reinterpret_cast<Quad>(reinterpret_cast<Bits>(a) ^ reinterpret_cast<Bits>(signs));
-}
-
 /// Numbers that are worked on together: eight where a register holds them (AVX-512), else four.
 /// Every operation rounds as the same operation on a double does, so code written for a type `Real`
 /// gives the same bits with double and with Pack, on any processor.
@@ -175,6 +169,11 @@ Vec3T<Real> select(const Mask& mask, const Vec3T<Real>& yes, const Vec3T<Real>& 
   return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
 }
 
+inline Pack abs(const Pack& a) {
+  using Bits = std::int64_t __attribute__((vector_size(sizeof(Pack::Lanes))));
+  return Pack(reinterpret_cast<Pack::Lanes>(reinterpret_cast<Bits>(a.lanes()) & INT64_MAX));
+}
+
 inline bool any(const PackMask& mask) { return mask.to_unsigned() != 0; }
 inline bool any(bool mask) { return mask; }
 
@@ -203,6 +202,22 @@ template <class Row>
   store_quad(to + k * stride, __builtin_shufflevector(row, row, 0, 1, 2, 3));
   store_quad(to + (k + 4) * stride, __builtin_shufflevector(row, row, 4, 5, 6, 7));
 }
+[[gnu::always_inline]] inline void store_row(double* to, std::size_t stride, std::size_t k,
+                                             Pack::Lanes row, Pack::Lanes second) {
+  Pack(__builtin_shufflevector(row, second, 0, 1, 2, 3, 8, 9, 10, 11)).store(to + k * stride);
+  Pack(__builtin_shufflevector(row, second, 4, 5, 6, 7, 12, 13, 14, 15))
+      .store(to + (k + 4) * stride);
+}
+
+/// Two Quads on the way of a sum, as they follow one another in memory, aligned to 64 bytes.
+class QuadPair {
+ public:
+  void add(const double* from) { sum_ += Pack::load(from); }
+  void store(double* to) const { sum_.store(to); }
+
+ private:
+  Pack sum_;
+};
 
 #else
 
@@ -226,17 +241,40 @@ template <class Row>
                                              Quad row) {
   store_quad(to + k * stride, row);
 }
+[[gnu::always_inline]] inline void store_row(double* to, std::size_t stride, std::size_t k,
+                                             Quad row, Quad second) {
+  store_quad(to + k * stride, row);
+  store_quad(to + k * stride + 4, second);
+}
+
+class QuadPair {
+ public:
+  void add(const double* from) {
+    first_ += load_quad(from);
+    second_ += load_quad(from + 4);
+  }
+  void store(double* to) const {
+    store_quad(to, first_);
+    store_quad(to + 4, second_);
+  }
+
+ private:
+  Quad first_{};
+  Quad second_{};
+};
 
 #endif
 
 /// The vectors that row(0) ... row(kLanes - 1), each a Quad, hold in their first three numbers.
+/// @param fourth the fourth numbers; null: not wanted
 template <class Row>
-[[gnu::always_inline]] inline Vec3T<Pack> columns_of(const Row& row) {
+[[gnu::always_inline]] inline Vec3T<Pack> columns_of(const Row& row, Pack* fourth = nullptr) {
   Pack::Lanes a = row_of(row, 0);
   Pack::Lanes b = row_of(row, 1);
   Pack::Lanes c = row_of(row, 2);
   Pack::Lanes d = row_of(row, 3);
   transpose(a, b, c, d);
+  if (fourth != nullptr) *fourth = Pack(d);
   return {Pack(a), Pack(b), Pack(c)};
 }
 
@@ -252,18 +290,34 @@ template <class Row, class Minus>
   return {Pack(a), Pack(b), Pack(c)};
 }
 
-/// Writes each lane's vector, and a zero behind it, to to + lane x stride (aligned to 32 bytes).
-[[gnu::always_inline]] inline void store_rows(const Vec3T<Pack>& v, double* to,
-                                              std::size_t stride) {
-  Pack::Lanes a = v.x.lanes();
-  Pack::Lanes b = v.y.lanes();
-  Pack::Lanes c = v.z.lanes();
-  Pack::Lanes d{};
-  transpose(a, b, c, d);
-  store_row(to, stride, 0, a);
-  store_row(to, stride, 1, b);
-  store_row(to, stride, 2, c);
-  store_row(to, stride, 3, d);
-}
+/// Vectors turned into rows, one for each lane, with a fourth number behind each.
+class Rows {
+ public:
+  [[gnu::always_inline]] explicit Rows(const Vec3T<Pack>& v, const Pack& fourth = Pack())
+      : a_(v.x.lanes()), b_(v.y.lanes()), c_(v.z.lanes()), d_(fourth.lanes()) {
+    transpose(a_, b_, c_, d_);
+  }
+  [[gnu::always_inline]] Rows operator-() const { return Rows(-a_, -b_, -c_, -d_); }
+
+  /// Writes each lane's row to to + lane x stride (aligned to 32 bytes).
+  [[gnu::always_inline]] void store(double* to, std::size_t stride) const {
+    store_row(to, stride, 0, a_);
+    store_row(to, stride, 1, b_);
+    store_row(to, stride, 2, c_);
+    store_row(to, stride, 3, d_);
+  }
+  /// The same with the row of `second` behind it (aligned to 64 bytes).
+  [[gnu::always_inline]] void store(const Rows& second, double* to, std::size_t stride) const {
+    store_row(to, stride, 0, a_, second.a_);
+    store_row(to, stride, 1, b_, second.b_);
+    store_row(to, stride, 2, c_, second.c_);
+    store_row(to, stride, 3, d_, second.d_);
+  }
+
+ private:
+  using Lanes = Pack::Lanes;
+  Rows(Lanes a, Lanes b, Lanes c, Lanes d) : a_(a), b_(b), c_(c), d_(d) {}
+  Lanes a_, b_, c_, d_;
+};
 
 }  // namespace grouser

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "base/vec3.hpp"
@@ -18,6 +19,12 @@ struct alignas(32) Particle {
   std::int64_t id = 0;  ///< 0 ... N-1, the same on every rank
 };
 static_assert(sizeof(Particle) == 96);
+
+/// A grain as numbers in memory: how many, and where velocity and spin begin; the position is
+/// first.
+inline constexpr std::size_t kGrainStride = sizeof(Particle) / sizeof(double);
+inline constexpr std::size_t kVelocityAt = offsetof(Particle, velocity) / sizeof(double);
+inline constexpr std::size_t kSpinAt = offsetof(Particle, spin) / sizeof(double);
 
 /// Whether two grains are closer than the sum of their radii + `gap` [m].
 inline bool is_within(const Particle& a, const Particle& b, double gap) {

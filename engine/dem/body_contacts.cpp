@@ -7,12 +7,21 @@
 
 #include "engine/dem/history_view.hpp"
 #include "engine/dem/pair_contacts.hpp"
+#include "engine/dem/touch_pack.hpp"
 
 namespace grouser {
 namespace {
 
 // Grains closer to a body than this share of the skin are looked at in every step.
 constexpr double kGap = 0.25;
+
+// Grains between fetching one and using it: those near a body are far from each other in memory.
+constexpr std::size_t kAhead = 8;
+
+[[gnu::always_inline]] inline void fetch(const Particle& particle) {
+  __builtin_prefetch(&particle);
+  __builtin_prefetch(&particle.id);
+}
 
 }  // namespace
 
@@ -190,21 +199,23 @@ void BodyContacts::carry_over(Part& part, std::size_t first, std::size_t last) c
   part.next.history.insert(part.next.history.end(), place(first), place(last));
 }
 
-template <class Law, class Rolling>
-void BodyContacts::sweep(const Law& law, const Rolling& rolling,
-                         const std::vector<Particle>& particles, const Body& body, double time_step,
-                         Activity& activity, Part& part) const {
-  using View = HistoryView<Law, Rolling>;
+// Leaves the touches of this step in part.next, and those whose forces are wanted in part.acting
+// with the histories that they go on from.
+void BodyContacts::find_touches(const std::vector<Particle>& particles, const Body& body,
+                                Activity& activity, Part& part) const {
   const BodyFrame frame(body.motion);
-  const Vec3 body_spin{0.0, body.motion.spin, 0.0};
   const std::vector<Touch>& touches = part.touches.at;
   std::vector<MeshTouch>& now = part.now;
   const bool is_at_rest = body.is_at_rest();
-  BodyLoad load;
-  double largest = 0.0;
   std::size_t before = 0;
   const int* facets = part.facets.data();
-  for (const auto& [i, facet_count] : part.close) {
+  part.next.clear();
+  part.acting.clear();
+  part.acting_history.clear();
+  part.nearest.clear();
+  for (std::size_t c = 0; c < part.close.size(); ++c) {
+    const auto& [i, facet_count] = part.close[c];
+    fetch(particles[part.close[std::min(c + kAhead, part.close.size() - 1)].particle]);
     const Particle& p = particles[i];
     const int* const near = facets;
     facets += facet_count;
@@ -220,47 +231,52 @@ void BodyContacts::sweep(const Law& law, const Rolling& rolling,
       activity.note_moving_touch(i);
     if (now.empty()) continue;
     inherit(part, before, after, *body.search);
-    for (std::size_t t = 0; t < now.size(); ++t) {
-      const Vec3 point = frame.to_world(now[t].point);
-      ContactPoint at;
-      at.overlap = p.radius - now[t].distance;
-      at.radius = p.radius;
-      at.mass = p.mass;
-      at.normal = (1.0 / now[t].distance) * (p.position - point);
-      // Half an overlap inside either surface, as seen from the grain.
-      const double reach = p.radius - 0.5 * at.overlap;
-      const Vec3 arm = p.position - reach * at.normal - body.motion.position;
-      const Vec3 velocity = p.velocity - body.motion.velocity - cross(body_spin, arm);
-      at.normal_velocity = dot(velocity, at.normal);
-      at.slip_velocity =
-          velocity - at.normal_velocity * at.normal - reach * cross(p.spin, at.normal);
-      const Vec3 spin = p.spin - body_spin;
-      at.rolling_rate = spin - dot(spin, at.normal) * at.normal;
-
-      typename Law::History contact_history;
-      typename Rolling::History rolling_history;
-      double* const stored = part.histories.data() + t * View::kWidth;
-      View::load(stored, contact_history, rolling_history);
-      const ContactForce result = law.evaluate(at, contact_history, time_step);
-      const Vec3 turning = rolling.evaluate(at, result, rolling_history, time_step);
-      View::store(stored, contact_history, rolling_history);
-
-      const Vec3 on_grain = result.normal * at.normal + result.tangential;
-      part.pushes.push_back({i, on_grain, reach * cross(result.tangential, at.normal) + turning});
-      if (is_frozen) continue;
-      load.force_x.add(-on_grain.x);
-      load.force_y.add(-on_grain.y);
-      load.force_z.add(-on_grain.z);
-      load.force_moment_y.add(-cross(arm, on_grain).y);
-      load.couple_y.add(-turning.y);
-      largest = std::max(largest, at.overlap / p.radius);
-      part.next.at.push_back({i, now[t].facet});
+    for (const MeshTouch& touch : now) {
+      const Vec3 point = frame.to_world(touch.point);
+      part.nearest.insert(part.nearest.end(), {point.x, point.y, point.z, touch.distance});
+      part.acting.push_back({i, is_frozen ? kFrozen : part.next.at.size()});
+      if (!is_frozen) part.next.at.push_back({i, touch.facet});
     }
-    if (is_frozen) continue;
-    part.next.history.insert(part.next.history.end(), part.histories.begin(), part.histories.end());
+    part.acting_history.insert(part.acting_history.end(), part.histories.begin(),
+                               part.histories.end());
+    // Filled when the touches have acted.
+    part.next.history.resize(part.next.at.size() * history_width_);
+  }
+}
+
+// Evaluates part.acting, Pack::kLanes touches at a time.
+template <class Law, class Rolling>
+void BodyContacts::act(const Law& law, const Rolling& rolling,
+                       const std::vector<Particle>& particles, const Body& body, double time_step,
+                       Part& part) const {
+  const std::size_t count = part.acting.size();
+  part.pushes.resize((count + Pack::kLanes) * kGrainLoad);
+  BodyLoad load;
+  part.largest = 0.0;
+  for (std::size_t first = 0; first < count; first += Pack::kLanes) {
+    TouchPack<Law, Rolling> pack;
+    for (std::size_t lane = 0; lane < Pack::kLanes; ++lane) {
+      // Lanes behind the last touch repeat it.
+      const std::size_t t = std::min(first + lane, count - 1);
+      pack.grain[lane] = &particles[part.acting[t].particle].position.x;
+      pack.nearest[lane] = &part.nearest[4 * t];
+      pack.set_history(lane, &part.acting_history[t * history_width_]);
+    }
+    pack.act(law, rolling, body.motion, time_step, &part.pushes[first * kGrainLoad]);
+    for (std::size_t lane = 0; lane < std::min(Pack::kLanes, count - first); ++lane) {
+      const std::size_t place = part.acting[first + lane].place;
+      if (place == kFrozen) continue;
+      pack.get_history(lane, &part.next.history[place * history_width_]);
+      const double* const push = &part.pushes[(first + lane) * kGrainLoad];
+      load.force_x.add(-push[0]);
+      load.force_y.add(-push[1]);
+      load.force_z.add(-push[2]);
+      load.force_moment_y.add(-pack.force_moment_y[lane]);
+      load.couple_y.add(-pack.couple_y[lane]);
+      part.largest = std::max(part.largest, pack.share[lane]);
+    }
   }
   part.load = load;
-  part.largest = largest;
 }
 
 double BodyContacts::sweep(const std::vector<Particle>& particles, const Body& body,
@@ -276,13 +292,10 @@ double BodyContacts::sweep(const std::vector<Particle>& particles, const Body& b
   threads_.run([&](std::size_t share) {
     Part& part = parts_[share];
     if (is_out) find_close(particles, body, part);
-    part.pushes.clear();
-    part.next.clear();
-    std::visit(
-        [&](const auto& law, const auto& rolling) {
-          sweep(law, rolling, particles, body, time_step, activity, part);
-        },
-        law_, rolling_);
+    find_touches(particles, body, activity, part);
+    std::visit([&](const auto& law,
+                   const auto& rolling) { act(law, rolling, particles, body, time_step, part); },
+               law_, rolling_);
     std::swap(part.touches, part.next);
   });
   double largest = 0.0;

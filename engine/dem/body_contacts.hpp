@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/core/aligned.hpp"
 #include "engine/core/exact_sum.hpp"
 #include "engine/core/particle.hpp"
 #include "engine/core/state_io.hpp"
@@ -13,6 +14,7 @@
 #include "engine/dem/body.hpp"
 #include "engine/dem/history_view.hpp"
 #include "engine/dem/laws/table.hpp"
+#include "engine/dem/pair_pack.hpp"
 
 namespace grouser {
 
@@ -60,26 +62,22 @@ class BodyContacts {
   /// Tells that no grain has moved by more than `distance` [m] in a step.
   void note_travel(double distance) { travel_ += distance; }
 
-  /// What a touch does to its grain: force [N] and moment about its centre [N m].
-  struct Push {
-    std::uint32_t particle = 0;
-    Vec3 force;
-    Vec3 moment;
-  };
-
   /// Evaluates all touches; adds the opposite to `load`. Those of a sleeping grain with a body at
   /// rest stay as they are and add nothing, even where the forces on that grain are wanted.
   /// @return largest overlap over grain radius [1]
   double sweep(const std::vector<Particle>& particles, const Body& body, double time_step,
                Activity& activity, BodyLoad& load);
 
-  /// Calls visit(push) for what the last sweep did to the grains first ... last-1, grain by grain.
+  /// Calls visit(grain, push) for what the last sweep did to the grains first ... last-1, grain by
+  /// grain: force [N] and moment about the grain's centre [N m], kGrainLoad numbers.
   template <class Visit>
   void each_push(std::size_t first, std::size_t last, const Visit& visit) const {
-    for (const Part& part : parts_)
-      for (auto at = first_of(part.pushes, first); at != part.pushes.end() && at->particle < last;
+    for (const Part& part : parts_) {
+      const auto begin = part.acting.begin();
+      for (auto at = first_of(part.acting, first); at != part.acting.end() && at->particle < last;
            ++at)
-        visit(*at);
+        visit(at->particle, &part.pushes[static_cast<std::size_t>(at - begin) * kGrainLoad]);
+    }
   }
 
   /// Owned grains that may touch before the next find_near.
@@ -131,6 +129,12 @@ class BodyContacts {
     std::uint32_t particle;
     std::uint32_t facets;
   };
+  // A touch whose force on the grain is wanted in this step, and its place in Part::next.
+  struct Acting {
+    std::uint32_t particle;
+    std::size_t place;  // kFrozen: the grain sleeps, nothing is remembered
+  };
+  static constexpr std::size_t kFrozen = static_cast<std::size_t>(-1);
   // The grains near_[first] ... near_[last-1] and what belongs to them.
   struct alignas(64) Part {
     std::size_t first = 0;
@@ -139,7 +143,10 @@ class BodyContacts {
     std::vector<int> facets;  // of one close grain after the other
     Touches touches;          // of the last step
     Touches next;
-    std::vector<Push> pushes;
+    std::vector<Acting> acting;
+    std::vector<double> acting_history;  // of each, history_width_ numbers
+    LineVector<double> nearest;          // of each: the body's point [m], and how far it is [m]
+    LineVector<double> pushes;           // of each: kGrainLoad numbers
     BodyLoad load;
     double largest = 0.0;  // overlap over grain radius
     // Of the grain that is being looked at.
@@ -159,10 +166,12 @@ class BodyContacts {
   void collect();
   void look(const std::vector<Particle>& particles, std::size_t owned, const Body& body);
   void find_close(const std::vector<Particle>& particles, const Body& body, Part& part) const;
-  template <class Law, class Rolling>
-  void sweep(const Law& law, const Rolling& rolling, const std::vector<Particle>& particles,
-             const Body& body, double time_step, Activity& activity, Part& part) const;
+  void find_touches(const std::vector<Particle>& particles, const Body& body, Activity& activity,
+                    Part& part) const;
   void carry_over(Part& part, std::size_t first, std::size_t last) const;
+  template <class Law, class Rolling>
+  void act(const Law& law, const Rolling& rolling, const std::vector<Particle>& particles,
+           const Body& body, double time_step, Part& part) const;
   /// Finds the histories of the touches `now` among those first ... last-1 of the same grain in the
   /// step before.
   void inherit(Part& part, std::size_t first, std::size_t last, const MeshSearch& search) const;

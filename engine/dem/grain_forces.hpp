@@ -15,20 +15,28 @@ struct GrainLoad {
   Vec3 moment;  ///< about its centre [N m]
 };
 
-/// What a step changes.
-struct GrainGain {
-  Vec3 velocity;  ///< [m s-1]
-  Vec3 spin;      ///< [rad s-1]
+/// What a step changes. @tparam Real double, or Pack for several grains
+template <class Real>
+struct GrainGainT {
+  Vec3T<Real> velocity;  ///< [m s-1]
+  Vec3T<Real> spin;      ///< [rad s-1]
 };
+using GrainGain = GrainGainT<double>;
 
-/// The gain of a grain under its contacts and gravity alone, along -z. Local.
+/// The gain of a grain of this radius [m] and mass [kg] under the force [N] and the moment [N m] of
+/// its contacts and gravity alone, along -z. Local.
+template <class Real>
+inline GrainGainT<Real> plain_gain(const Real& radius, const Real& mass, const Vec3T<Real>& force,
+                                   const Vec3T<Real>& moment, double time_step, double gravity) {
+  GrainGainT<Real> gain;
+  gain.velocity = (Real(time_step) / mass) * force;
+  gain.velocity.z -= Real(time_step * gravity);
+  gain.spin = (Real(time_step) / (Real(kSphereInertia) * mass * radius * radius)) * moment;
+  return gain;
+}
 inline GrainGain plain_gain(const Particle& p, const GrainLoad& load, double time_step,
                             double gravity) {
-  GrainGain gain;
-  gain.velocity = (time_step / p.mass) * load.force;
-  gain.velocity.z -= time_step * gravity;
-  gain.spin = (time_step / (kSphereInertia * p.mass * p.radius * p.radius)) * load.moment;
-  return gain;
+  return plain_gain(p.radius, p.mass, load.force, load.moment, time_step, gravity);
 }
 
 /// Forces on grains beyond contacts and gravity, such as a fluid's: the world asks once a step and

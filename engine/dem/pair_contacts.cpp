@@ -33,10 +33,7 @@ PairContacts::PairContacts(ContactLaw law, RollingLaw rolling, Threads threads)
       kept_(grouser::history_width(law, rolling)),
       desks_(threads.count(), Desk(kept_.width())),
       fast_speed_(std::numeric_limits<double>::infinity()) {
-  for (Desk& desk : desks_) {
-    desk.forces.resize(kChunk * 4);
-    desk.moments.resize(kChunk * 4);
-  }
+  for (Desk& desk : desks_) desk.loads.resize(kChunk * kGrainLoad);
 }
 
 void PairContacts::set_laws(ContactLaw law, RollingLaw rolling) {
@@ -233,30 +230,22 @@ void PairContacts::hand_over(std::size_t share, std::size_t chunk, const Finish&
   const std::size_t first = chunk * kChunk;
   const std::size_t last = std::min(first + kChunk, owned_);
   const bool some = activity.is_on() && lights_[chunk] == Light::kMixed;
-  add_up(first, last, desk.forces.data(), desk.moments.data(), some ? &activity : nullptr);
-  finish({share, first, last, desk.forces.data(), desk.moments.data()});
+  add_up(first, last, desk.loads.data(), some ? &activity : nullptr);
+  finish({share, first, last, desk.loads.data()});
 }
 
 // Grains with equally many slots follow one another, which the processor foresees.
 // @param wanted of which grains; null: of all
-void PairContacts::add_up(std::size_t first, std::size_t last, double* forces, double* moments,
+void PairContacts::add_up(std::size_t first, std::size_t last, double* loads,
                           const Activity* wanted) const {
-  // Turns the force on the lower id into that on the higher: only the sign bits differ.
-  alignas(32) static constexpr double kSign[8] = {0.0, 0.0, 0.0, 0.0, -0.0, -0.0, -0.0, -0.0};
   for (std::size_t k = first; k < last; ++k) {
     const std::size_t local = by_count_[k];
     if (wanted != nullptr && !wanted->is_wanted(first + local)) continue;
-    Quad sum{};
-    Quad turn{};
-    for (std::uint32_t at = side_start_[first + local]; at < side_start_[first + local + 1]; ++at) {
-      const std::uint32_t side = sides_[at];
-      const std::uint32_t is_higher = side & 1u;
-      const double* const result = &results_[std::size_t{side >> 1} * kPairResult];
-      sum += flip_signs(load_quad(result), load_quad(kSign + 4 * is_higher));
-      turn += load_quad(result + 4 + 4 * is_higher);
-    }
-    store_quad(&forces[4 * local], sum);
-    store_quad(&moments[4 * local], turn);
+    const std::uint32_t* side = &sides_[side_start_[first + local]];
+    const std::uint32_t* const end = &sides_[side_start_[first + local + 1]];
+    QuadPair sum;
+    for (; side != end; ++side) sum.add(&results_[std::size_t{*side} * kGrainLoad]);
+    sum.store(&loads[kGrainLoad * local]);
   }
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -63,14 +65,12 @@ class PairContacts {
   /// @param skin      pairs closer than the sum of radii + skin are listed [m]
   void build(const std::vector<Particle>& particles, std::size_t owned, double skin);
 
-  /// A few neighbouring owned grains first ... last-1 whose pair forces [N] and moments [N m] are
-  /// complete, four numbers each, which may be written to.
+  /// A few neighbouring owned grains first ... last-1 whose pair forces are complete.
   struct Ready {
     std::size_t share;  ///< of the threads; tells apart what runs at the same time
     std::size_t first;
     std::size_t last;
-    double* forces;
-    double* moments;
+    double* loads;  ///< kGrainLoad numbers a grain [N, N m], which may be written to
   };
   /// Takes them over. No other grain needs their positions any more in this step, so they may be
   /// moved. Called by several threads at a time, in no particular order.
@@ -93,6 +93,11 @@ class PairContacts {
 
   /// Whether a grain was much faster than the mean when the slots were made.
   bool is_fast(std::size_t grain) const { return is_fast_[grain] != 0; }
+  /// Whether one of Pack::kLanes grains from this one on was.
+  bool has_fast(std::size_t grain) const {
+    constexpr std::array<std::uint8_t, Pack::kLanes> kNone{};
+    return std::memcmp(&is_fast_[grain], kNone.data(), kNone.size()) != 0;
+  }
 
   /// Pairs of an owned grain that are looked at in a step.
   std::size_t slots_of(std::size_t grain) const {
@@ -131,9 +136,8 @@ class PairContacts {
   // What a thread works with.
   struct alignas(64) Desk {
     explicit Desk(std::size_t history_width) : slots(history_width) {}
-    PairSlots slots;            // of a block while it is made
-    LineVector<double> forces;  // of the chunk that is being added up
-    LineVector<double> moments;
+    PairSlots slots;           // of a block while it is made
+    LineVector<double> loads;  // of the chunk that is being added up
     double largest = 0.0;
     std::vector<double> held;  // histories of a pack, of which some stay as they are
   };
@@ -189,8 +193,7 @@ class PairContacts {
                 double time_step, Pack& largest);
   void hand_over(std::size_t share, std::size_t chunk, const Finish& finish,
                  const Activity& activity);
-  void add_up(std::size_t first, std::size_t last, double* forces, double* moments,
-              const Activity* wanted) const;
+  void add_up(std::size_t first, std::size_t last, double* loads, const Activity* wanted) const;
 
   ContactLaw law_;
   RollingLaw rolling_;

@@ -11,9 +11,10 @@
 
 namespace grouser {
 
-/// Numbers of a pair's result, each vector filled up to four: force on the lower id, moment on the
-/// lower id, moment on the higher id.
-inline constexpr std::size_t kPairResult = 12;
+/// Numbers of what a contact does to one of its grains: force and moment, each filled up to four.
+inline constexpr std::size_t kGrainLoad = 8;
+/// Numbers of a pair's result: what it does to the grain with the lower id, then to the other.
+inline constexpr std::size_t kPairResult = 2 * kGrainLoad;
 
 /// A pack of pairs on its way from the grains' positions to their forces.
 ///
@@ -29,9 +30,6 @@ struct PairPack {
   /// First half: how the pairs from `slot` on touch and move. @param grains first number of all
   [[gnu::always_inline]] void approach(const double* grains, const PairSlots& slots,
                                        std::size_t slot) {
-    // Places of a grain's vectors among its numbers.
-    constexpr std::size_t kVelocity = offsetof(Particle, velocity) / sizeof(double);
-    constexpr std::size_t kSpin = offsetof(Particle, spin) / sizeof(double);
     const std::uint32_t* const lower = slots.lower_places(slot);
     const std::uint32_t* const higher = slots.higher_places(slot);
     const double* const shape = slots.shapes(slot);
@@ -50,15 +48,16 @@ struct PairPack {
     at.overlap = reach - distance;
     at.radius = Pack::load(shape + 2 * Pack::kLanes);
     at.mass = Pack::load(shape + 3 * Pack::kLanes);
-    at.normal = (Pack(1.0) / distance) * apart;
+    // The division need not wait for the root.
+    at.normal = (distance * (Pack(1.0) / distance2)) * apart;
     const Vec3T<Pack> velocity =
-        columns_of_difference(rows(lower, kVelocity), rows(higher, kVelocity));
+        columns_of_difference(rows(lower, kVelocityAt), rows(higher, kVelocityAt));
     at.normal_velocity = dot(velocity, at.normal);
     const Pack half = Pack(0.5) * at.overlap;
     arm_lower = radius_a - half;
     arm_higher = radius_b - half;
-    const Vec3T<Pack> spin_a = columns_of(rows(lower, kSpin));
-    const Vec3T<Pack> spin_b = columns_of(rows(higher, kSpin));
+    const Vec3T<Pack> spin_a = columns_of(rows(lower, kSpinAt));
+    const Vec3T<Pack> spin_b = columns_of(rows(higher, kSpinAt));
     at.slip_velocity = velocity - at.normal_velocity * at.normal -
                        cross(arm_lower * spin_a + arm_higher * spin_b, at.normal);
     const Vec3T<Pack> spin = spin_a - spin_b;
@@ -80,10 +79,11 @@ struct PairPack {
     View::store_where(touches, histories, law_history, rolling_history);
     const Vec3T<Pack> twist = cross(contact.tangential, at.normal);
     const Vec3T<Pack> none;
-    store_rows(select(touches, contact.normal * at.normal + contact.tangential, none), result,
-               kPairResult);
-    store_rows(select(touches, arm_lower * twist + turning, none), result + 4, kPairResult);
-    store_rows(select(touches, arm_higher * twist - turning, none), result + 8, kPairResult);
+    const Rows force(select(touches, contact.normal * at.normal + contact.tangential, none));
+    const Rows moment_lower(select(touches, arm_lower * twist + turning, none));
+    const Rows moment_higher(select(touches, arm_higher * twist - turning, none));
+    force.store(moment_lower, result, kPairResult);
+    (-force).store(moment_higher, result + kGrainLoad, kPairResult);
   }
 };
 

@@ -51,7 +51,7 @@ class PairSlots {
 
  private:
   // Saves the sweep a multiplication per grain and use.
-  static constexpr std::uint32_t kStride = sizeof(Particle) / sizeof(double);
+  static constexpr auto kStride = static_cast<std::uint32_t>(kGrainStride);
 
   std::size_t history_width_;
   std::vector<std::uint32_t> lower_;

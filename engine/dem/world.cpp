@@ -9,15 +9,10 @@
 #include "base/errors.hpp"
 #include "base/list_reach.hpp"
 #include "engine/core/thread_clock.hpp"
+#include "engine/dem/pair_pack.hpp"
 
 namespace grouser {
 namespace {
-
-void add_to(double* sum, const Vec3& term) {
-  sum[0] += term.x;
-  sum[1] += term.y;
-  sum[2] += term.z;
-}
 
 Decomposition first_cuts(const Communicator& ranks, const WorldSettings& settings) {
   const Vec3 low = settings.low;
@@ -194,19 +189,22 @@ void World::watch(bool are_new) {
 
 void World::move(const PairContacts::Ready& ready, Motion& motion) {
   for (const BodyContacts& contacts : body_contacts_)
-    contacts.each_push(ready.first, ready.last, [&](const BodyContacts::Push& push) {
-      const std::size_t at = 4 * (push.particle - ready.first);
-      add_to(ready.forces + at, push.force);
-      add_to(ready.moments + at, push.moment);
+    contacts.each_push(ready.first, ready.last, [&](std::uint32_t grain, const double* push) {
+      double* const load = ready.loads + kGrainLoad * (grain - ready.first);
+      QuadPair sum;
+      sum.add(load);
+      sum.add(push);
+      sum.store(load);
     });
+  std::size_t first = ready.first;
+  if (forces_ == nullptr && !activity_.is_on()) first += move_packs(ready, motion);
   const double dt = settings_.time_step;
   const Vec3 low = settings_.low;
   const Vec3 high = settings_.high;
-  const double* forces = ready.forces;
-  const double* moments = ready.moments;
-  for (std::size_t i = ready.first; i < ready.last; ++i, forces += 4, moments += 4) {
+  const double* from = ready.loads + kGrainLoad * (first - ready.first);
+  for (std::size_t i = first; i < ready.last; ++i, from += kGrainLoad) {
     Particle& p = particles_[i];
-    const GrainLoad load{{forces[0], forces[1], forces[2]}, {moments[0], moments[1], moments[2]}};
+    const GrainLoad load{{from[0], from[1], from[2]}, {from[4], from[5], from[6]}};
     if (activity_.is_on() && activity_.rests(i, p, load.force, load.moment, motion.change))
       continue;
     const GrainGain gain =
@@ -224,6 +222,62 @@ void World::move(const PairContacts::Ready& ready, Motion& motion) {
     if (!std::isfinite(p.spin.x + p.spin.y + p.spin.z)) motion.fastest2 = NAN;
     if (speed2 > motion.slow2 && !pairs_.is_fast(i)) motion.slow2 = speed2;
   }
+}
+
+// Moves all grains that fill packs, to the same bits as one by one; returns how many.
+std::size_t World::move_packs(const PairContacts::Ready& ready, Motion& motion) {
+  const double dt = settings_.time_step;
+  const Vec3T<Pack> low{settings_.low.x, settings_.low.y, settings_.low.z};
+  const Vec3T<Pack> high{settings_.high.x, settings_.high.y, settings_.high.z};
+  const std::size_t count = (ready.last - ready.first) / Pack::kLanes * Pack::kLanes;
+  Pack fastest2(motion.fastest2);
+  Pack slow2(motion.slow2);
+  Pack sum;
+  PackMask is_inside = Pack() >= Pack();
+  PackMask is_finite = is_inside;
+  for (std::size_t k = 0; k < count; k += Pack::kLanes) {
+    double* const grains = &particles_[ready.first + k].position.x;
+    const double* const loads = ready.loads + kGrainLoad * k;
+    const auto rows = [](const double* from, std::size_t stride) {
+      return [=](std::size_t lane) { return load_quad(from + lane * stride); };
+    };
+    Pack radius, mass, id;
+    Vec3T<Pack> position = columns_of(rows(grains, kGrainStride), &radius);
+    Vec3T<Pack> velocity = columns_of(rows(grains + kVelocityAt, kGrainStride), &mass);
+    Vec3T<Pack> spin = columns_of(rows(grains + kSpinAt, kGrainStride), &id);
+    const GrainGainT<Pack> gain =
+        plain_gain(radius, mass, columns_of(rows(loads, kGrainLoad)),
+                   columns_of(rows(loads + kGrainLoad / 2, kGrainLoad)), dt, settings_.gravity);
+    velocity += gain.velocity;
+    position += Pack(dt) * velocity;
+    spin += gain.spin;
+    Rows(position, radius).store(grains, kGrainStride);
+    Rows(velocity, mass).store(grains + kVelocityAt, kGrainStride);
+    Rows(spin, id).store(grains + kSpinAt, kGrainStride);
+    is_inside = is_inside & (position.x >= low.x) & (position.y >= low.y) & (position.z >= low.z) &
+                (high.x >= position.x) & (high.y >= position.y) & (high.z >= position.z);
+    const Pack speed2 = norm2(velocity);
+    const Pack turning = spin.x + spin.y + spin.z;
+    // Neither holds for a NaN, nor for an infinite number's difference from itself.
+    is_finite = is_finite & (speed2 - speed2 >= Pack()) & (turning - turning >= Pack());
+    fastest2 = select(speed2 > fastest2, speed2, fastest2);
+    sum += abs(velocity.x) + abs(velocity.y) + abs(velocity.z);
+    if (!pairs_.has_fast(ready.first + k)) {
+      slow2 = select(speed2 > slow2, speed2, slow2);
+    } else {
+      for (std::size_t lane = 0; lane < Pack::kLanes; ++lane)
+        if (!pairs_.is_fast(ready.first + k + lane))
+          motion.slow2 = std::max(motion.slow2, speed2[lane]);
+    }
+  }
+  motion.is_lost |= any(!is_inside);
+  for (std::size_t lane = 0; lane < Pack::kLanes; ++lane) {
+    motion.fastest2 = std::max(motion.fastest2, fastest2[lane]);
+    motion.slow2 = std::max(motion.slow2, slow2[lane]);
+    motion.sum += sum[lane];
+  }
+  if (any(!is_finite)) motion.fastest2 = NAN;
+  return count;
 }
 
 // A NaN takes over and stays.

@@ -195,6 +195,7 @@ class World : public Stateful {
                                              const std::vector<Arrival>& arrivals) const;
   void put_in_order(std::vector<std::uint32_t> number);
   void move(const PairContacts::Ready& ready, Motion& motion);
+  std::size_t move_packs(const PairContacts::Ready& ready, Motion& motion);
   double displacement() const;
   void watch(bool are_new);
   std::optional<std::uint32_t> loaded_grain(std::int64_t id) const;

@@ -218,7 +218,7 @@ class ReferenceWorld {
     at.overlap = reach - distance;
     at.radius = a.radius * b.radius / reach;
     at.mass = a.mass * b.mass / (a.mass + b.mass);
-    at.normal = (1.0 / distance) * apart;
+    at.normal = (distance * (1.0 / norm2(apart))) * apart;
     const Vec3 velocity = a.velocity - b.velocity;
     at.normal_velocity = dot(velocity, at.normal);
     const double half = 0.5 * at.overlap;
