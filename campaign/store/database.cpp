@@ -2,12 +2,16 @@
 #include "campaign/store/database.hpp"
 
 #include <fcntl.h>
+#include <sqlite3.h>
 #include <sys/stat.h>
 #include <sys/vfs.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <string>
+#include <thread>
 
 #include "campaign/store/storage_advice.hpp"
 
@@ -36,6 +40,24 @@ unsigned long file_system_of(const std::filesystem::path& file) {
   const auto directory = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
   if (::statfs(directory.c_str(), &answer) != 0) return kSharedFileSystems.front();
   return static_cast<unsigned long>(static_cast<unsigned int>(answer.f_type));
+}
+
+// Of two that change the mode at once SQLite refuses one straight away, whatever its time limit.
+// Asks first: a change, even to what it is, needs a lock that a reader may hold.
+void set_journal(SQLite::Database& database, const std::string& wanted) {
+  constexpr std::chrono::milliseconds kPause{20};
+  const auto limit =
+      std::chrono::steady_clock::now() + std::chrono::milliseconds(kBusyMilliseconds);
+  for (;;) {
+    try {
+      if (database.execAndGet("PRAGMA journal_mode").getString() == wanted) return;
+      database.execAndGet("PRAGMA journal_mode = " + wanted);
+      return;
+    } catch (const SQLite::Exception& error) {
+      if (error.getErrorCode() != SQLITE_BUSY || std::chrono::steady_clock::now() > limit) throw;
+    }
+    std::this_thread::sleep_for(kPause);
+  }
 }
 
 }  // namespace
@@ -71,10 +93,7 @@ std::unique_ptr<SQLite::Database> open_database(const std::filesystem::path& fil
     if (to_write) {
       const JournalMode mode = journal_mode_for(file_system_of(file));
       database->exec("PRAGMA foreign_keys = ON");
-      // Asks first: changing the mode, even to itself, needs a lock that a reader may hold.
-      if (database->execAndGet("PRAGMA journal_mode").getString() !=
-          (std::string(mode.journal) == "WAL" ? "wal" : "delete"))
-        database->execAndGet(std::string("PRAGMA journal_mode = ") + mode.journal);
+      set_journal(*database, std::string(mode.journal) == "WAL" ? "wal" : "delete");
       database->exec(std::string("PRAGMA synchronous = ") + mode.synchronous);
       migrate(*database);
     } else if (database->execAndGet("PRAGMA user_version").getInt() != present_version()) {

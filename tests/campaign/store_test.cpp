@@ -5,11 +5,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "base/errors.hpp"
 #include "campaign/drive/clock.hpp"
 #include "campaign/drive/lease_guard.hpp"
+#include "campaign/store/database.hpp"
 #include "campaign/store/journal_mode.hpp"
 #include "campaign/store/storage_advice.hpp"
 #include "schedulers/command.hpp"
@@ -97,6 +102,26 @@ TEST_F(Database, AttemptsReadBackAsWritten) {
   EXPECT_EQ(back.wall_seconds, 0.1);
   EXPECT_EQ(back.state_hash, "abc");
   EXPECT_EQ(start(store_.runs()[1], "t2").number, 2);
+}
+
+// Changing the journal's mode does not wait for locks by itself.
+TEST_F(Database, ManyMayMakeItAtOnce) {
+  const TemporaryDirectory directory;
+  for (int round = 0; round < 40; ++round) {
+    const std::filesystem::path file = directory.path() / ("new" + std::to_string(round) + ".db");
+    std::vector<std::string> failures(8);
+    std::vector<std::thread> makers;
+    for (std::string& failure : failures)
+      makers.emplace_back([&failure, &file] {
+        try {
+          open_database(file, true);
+        } catch (const std::exception& error) {
+          failure = error.what();
+        }
+      });
+    for (std::thread& maker : makers) maker.join();
+    for (const std::string& failure : failures) ASSERT_EQ(failure, "") << "round " << round;
+  }
 }
 
 TEST_F(Database, RefusesASecondActiveAttemptOfARun) {
