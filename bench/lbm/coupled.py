@@ -8,21 +8,9 @@ ranks. Fractions are taken within a turn, then their median.
 import argparse
 import json
 import statistics
-import subprocess
 import sys
 
-RANKS = (1, 2)
-PRECISIONS = ('double', 'float')
-
-
-def run(command, ranks):
-    mpi = ['mpirun', '--oversubscribe', '--bind-to', 'none', '-np', str(ranks)]
-    done = subprocess.run(mpi + command, stdout=subprocess.PIPE, text=True, check=True)
-    return json.loads(done.stdout.splitlines()[-1])
-
-
-def spread(values):
-    return f'{statistics.median(values):.1f} ({min(values):.1f}-{max(values):.1f})'
+from turns import PRECISIONS, RANKS, run, spread
 
 
 def main():

@@ -3,12 +3,12 @@
 // same; prints one line of JSON. Started by coupled.py.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "bench/lbm/timed.hpp"
 #include "engine/lbm/flow.hpp"
 
 namespace grouser::bench {
@@ -21,16 +21,6 @@ struct Options {
   double solids = 0.33;
   int steps = 10;
 };
-
-// Seconds of the slowest rank.
-template <class Work>
-double timed(const Communicator& ranks, const Work& work) {
-  ranks.barrier();
-  const auto begin = std::chrono::steady_clock::now();
-  work();
-  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-  return ranks.max(taken.count());
-}
 
 double middle(std::vector<double> values) {
   std::sort(values.begin(), values.end());

@@ -2,10 +2,10 @@
 // One run of plain flow in a periodic cube and, around it, of the bandwidth that its streams of
 // memory could have; prints one line of JSON. Started by compare.py.
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "bench/lbm/timed.hpp"
 #include "engine/lbm/flow.hpp"
 #include "engine/lbm/lattice.hpp"
 #include "engine/lbm/populations.hpp"
@@ -21,16 +21,6 @@ struct Options {
   std::int64_t cells = 128;
   int steps = 20;
 };
-
-// Seconds of the slowest rank.
-template <class Work>
-double timed(const Communicator& ranks, const Work& work) {
-  ranks.barrier();
-  const auto begin = std::chrono::steady_clock::now();
-  work();
-  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-  return ranks.max(taken.count());
-}
 
 // Every number read, changed a little and written back where it was, kStreams arrays side by side.
 template <class Real, std::size_t kStreams, bool kFetch>

@@ -19,7 +19,8 @@ struct Load {
 /// recursive bisection across the longest side. Boxes may be of any width. The same on all ranks.
 /// @param loads of this rank, wherever they are
 /// @return nothing when loads are too few, or too many of them in one place, for each rank to get
-/// some Collective.
+///         some
+/// Collective.
 std::optional<Decomposition> balanced(const Communicator& ranks, const std::vector<Load>& loads);
 
 }  // namespace grouser

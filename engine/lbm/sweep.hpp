@@ -66,10 +66,16 @@ template <class Set, class Real>
 
 }  // namespace detail
 
-/// Collides all cells of the rows and streams. Local.
-template <class Set, class Real, bool kForced, Parity kParity, class Collide>
-void sweep(Populations<Real>& populations, const Collide& collision, const Vec3T<Real>& force,
-           const SweepRange& range) {
+/// The walk of every sweep: cells of a register are read, collided and written where the step wants
+/// them. Local.
+/// @param begin_row,end_row called with each row before its cells are read and after all are
+/// written
+/// @param collide           called with f, the place of the first cell and the row; turns what
+///                          arrives along each velocity into what leaves
+template <class Set, class Real, Parity kParity, class Begin, class Collide, class End>
+[[gnu::always_inline]] inline void walk(Populations<Real>& populations, const SweepRange& range,
+                                        const Begin& begin_row, const Collide& collide,
+                                        const End& end_row) {
   constexpr std::size_t kVelocities = Set::kVelocities;
   constexpr bool kOdd = kParity == Parity::kOdd;
   constexpr auto kLanes = static_cast<std::ptrdiff_t>(WideOf<Real>::kLanes);
@@ -80,6 +86,7 @@ void sweep(Populations<Real>& populations, const Collide& collision, const Vec3T
     if constexpr (kOdd) streams[i] += populations.at(c.x, c.y, c.z);
   });
   for (const Row* row = range.rows; row != range.rows + range.count; ++row) {
+    begin_row(*row);
     if (kOdd && range.period_x > 0)
       detail::ghosts_from_ends<Set>(streams, row->begin, range.period_x);
     const Span* const spans = range.spans + row->first_span;
@@ -92,7 +99,7 @@ void sweep(Populations<Real>& populations, const Collide& collision, const Vec3T
           f[i] = load_wide(streams[from] + at);
           __builtin_prefetch(reinterpret_cast<const char*>(streams[from] + at) + kFetchAhead);
         });
-        collision.template collide<Set, kForced>(f, force);
+        collide(f, at, *row);
         unroll<kVelocities>([&](auto i) GROUSER_INLINE {
           constexpr std::size_t to = kOdd ? std::size_t{i} : opposite(i);
           store_wide(streams[to] + at, f[i]);
@@ -101,7 +108,20 @@ void sweep(Populations<Real>& populations, const Collide& collision, const Vec3T
     }
     if (kOdd && range.period_x > 0)
       detail::ends_from_ghosts<Set>(streams, row->begin, range.period_x);
+    end_row(*row);
   }
+}
+
+/// Collides all cells of the rows and streams. Local.
+template <class Set, class Real, bool kForced, Parity kParity, class Collide>
+void sweep(Populations<Real>& populations, const Collide& collision, const Vec3T<Real>& force,
+           const SweepRange& range) {
+  const auto nothing = [](const Row&) {};
+  walk<Set, Real, kParity>(
+      populations, range, nothing,
+      [&](Wide<Real>* f, std::ptrdiff_t, const Row&)
+          GROUSER_INLINE { collision.template collide<Set, kForced>(f, force); },
+      nothing);
 }
 
 }  // namespace grouser

@@ -46,37 +46,12 @@ template <class Set>
 template <class Set, Parity kParity>
 void sweep_parity(Populations<double>& populations, const TwoRates<double>& rates,
                   const Vec3& force, const SweepRange& range, double* const* fields) {
-  constexpr std::size_t kVelocities = Set::kVelocities;
-  constexpr bool kOdd = kParity == Parity::kOdd;
-  constexpr auto kLanes = static_cast<std::ptrdiff_t>(WideOf<double>::kLanes);
-  double* streams[kVelocities];
-  unroll<kVelocities>([&](auto i) GROUSER_INLINE {
-    constexpr LatticeVelocity c = Set::kSet.velocities[i];
-    streams[i] = populations.of(i);
-    if constexpr (kOdd) streams[i] += populations.at(c.x, c.y, c.z);
-  });
-  for (const Row* row = range.rows; row != range.rows + range.count; ++row) {
-    if (kOdd && range.period_x > 0)
-      detail::ghosts_from_ends<Set>(streams, row->begin, range.period_x);
-    const Span* const spans = range.spans + row->first_span;
-    for (const Span* span = spans; span != spans + row->spans; ++span) {
-      const std::ptrdiff_t end = span->begin + span->length;
-      for (std::ptrdiff_t at = span->begin; at < end; at += kLanes) {
-        Number f[kVelocities];
-        unroll<kVelocities>([&](auto i) GROUSER_INLINE {
-          constexpr std::size_t from = kOdd ? opposite(i) : std::size_t{i};
-          f[i] = load_wide(streams[from] + at);
-        });
-        collide<Set>(f, rates, force, fields, at);
-        unroll<kVelocities>([&](auto i) GROUSER_INLINE {
-          constexpr std::size_t to = kOdd ? std::size_t{i} : opposite(i);
-          store_wide(streams[to] + at, f[i]);
-        });
-      }
-    }
-    if (kOdd && range.period_x > 0)
-      detail::ends_from_ghosts<Set>(streams, row->begin, range.period_x);
-  }
+  const auto nothing = [](const Row&) {};
+  walk<Set, double, kParity>(
+      populations, range, nothing,
+      [&](Number* f, std::ptrdiff_t at, const Row&)
+          GROUSER_INLINE { collide<Set>(f, rates, force, fields, at); },
+      nothing);
 }
 
 }  // namespace

@@ -44,59 +44,38 @@ template <class Set, class Real, Parity kParity, class Collide>
 void sweep_immersed(Populations<Real>& populations, const Collide& collision,
                     const Vec3T<Real>& force, const SweepRange& range, const SolidMap& map,
                     ImmersedRows<Real>& solids) {
-  constexpr std::size_t kVelocities = Set::kVelocities;
-  constexpr bool kOdd = kParity == Parity::kOdd;
-  constexpr auto kLanes = static_cast<std::ptrdiff_t>(WideOf<Real>::kLanes);
-  Real* streams[kVelocities];
-  unroll<kVelocities>([&](auto i) GROUSER_INLINE {
-    constexpr LatticeVelocity c = Set::kSet.velocities[i];
-    streams[i] = populations.of(i);
-    if constexpr (kOdd) streams[i] += populations.at(c.x, c.y, c.z);
-  });
+  constexpr auto kLanes = WideOf<Real>::kLanes;
   SolidRow<Real>& solid = solids.row();
-  for (const Row* row = range.rows; row != range.rows + range.count; ++row) {
-    const std::ptrdiff_t z = row->begin / populations.step_z();
-    const std::ptrdiff_t y = (row->begin - z * populations.step_z()) / populations.step_y();
-    const bool has_solids = solids.begin_row(y, z, map);
-    if (kOdd && range.period_x > 0)
-      detail::ghosts_from_ends<Set>(streams, row->begin, range.period_x);
-    const Span* const spans = range.spans + row->first_span;
-    for (const Span* span = spans; span != spans + row->spans; ++span) {
-      const std::ptrdiff_t end = span->begin + span->length;
-      for (std::ptrdiff_t at = span->begin; at < end; at += kLanes) {
-        Wide<Real> f[kVelocities];
-        unroll<kVelocities>([&](auto i) GROUSER_INLINE {
-          constexpr std::size_t from = kOdd ? opposite(i) : std::size_t{i};
-          f[i] = load_wide(streams[from] + at);
-          __builtin_prefetch(reinterpret_cast<const char*>(streams[from] + at) + kFetchAhead);
-        });
-        const auto x = static_cast<std::size_t>(at - row->begin);
-        if (has_solids && solid.covered[x / static_cast<std::size_t>(kLanes)] != 0) {
-          Wide<Real> before[kVelocities];
-          unroll<kVelocities>([&](auto i) GROUSER_INLINE { before[i] = f[i]; });
-          const auto m = moments_of<true, Set>(f, force);
+  bool has_solids = false;
+  walk<Set, Real, kParity>(
+      populations, range,
+      [&](const Row& row) {
+        const std::ptrdiff_t z = row.begin / populations.step_z();
+        const std::ptrdiff_t y = (row.begin - z * populations.step_z()) / populations.step_y();
+        has_solids = solids.begin_row(y, z, map);
+      },
+      [&](Wide<Real>* f, std::ptrdiff_t at, const Row& row) GROUSER_INLINE {
+        const auto x = static_cast<std::size_t>(at - row.begin);
+        if (!has_solids || solid.covered[x / kLanes] == 0) {
           collision.template collide<Set, true>(f, force);
-          detail::mix_with_solid<Set, Real>(
-              f, before, m, load_wide(solid.weight.data() + x),
-              {load_wide(solid.velocity[0].data() + x), load_wide(solid.velocity[1].data() + x),
-               load_wide(solid.velocity[2].data() + x)});
-          store_wide(solid.density.data() + x, m.density);
-          store_wide(solid.momentum[0].data() + x, m.momentum.x);
-          store_wide(solid.momentum[1].data() + x, m.momentum.y);
-          store_wide(solid.momentum[2].data() + x, m.momentum.z);
-        } else {
-          collision.template collide<Set, true>(f, force);
+          return;
         }
-        unroll<kVelocities>([&](auto i) GROUSER_INLINE {
-          constexpr std::size_t to = kOdd ? std::size_t{i} : opposite(i);
-          store_wide(streams[to] + at, f[i]);
-        });
-      }
-    }
-    if (kOdd && range.period_x > 0)
-      detail::ends_from_ghosts<Set>(streams, row->begin, range.period_x);
-    if (has_solids) solids.end_row();
-  }
+        Wide<Real> before[Set::kVelocities];
+        unroll<Set::kVelocities>([&](auto i) GROUSER_INLINE { before[i] = f[i]; });
+        const auto m = moments_of<true, Set>(f, force);
+        collision.template collide<Set, true>(f, force);
+        detail::mix_with_solid<Set, Real>(
+            f, before, m, load_wide(solid.weight.data() + x),
+            {load_wide(solid.velocity[0].data() + x), load_wide(solid.velocity[1].data() + x),
+             load_wide(solid.velocity[2].data() + x)});
+        store_wide(solid.density.data() + x, m.density);
+        store_wide(solid.momentum[0].data() + x, m.momentum.x);
+        store_wide(solid.momentum[1].data() + x, m.momentum.y);
+        store_wide(solid.momentum[2].data() + x, m.momentum.z);
+      },
+      [&](const Row&) {
+        if (has_solids) solids.end_row();
+      });
 }
 
 }  // namespace grouser

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "base/case.hpp"
+#include "tests/base/case_problems.hpp"
 
 namespace grouser {
 namespace {
@@ -27,19 +28,8 @@ probes:
 output: {track: {grain: 1}}
 )";
 
-std::string problems_of(const std::string& text) {
-  std::vector<Problem> problems;
-  read_case(parse_yaml(text, "case.yaml"), problems);
-  std::string all;
-  for (const Problem& problem : problems) all += problem.text() + "\n";
-  return all;
-}
-
 std::string changed(const std::string& from, const std::string& to) {
-  std::string text = kSphere;
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return problems_of(text.replace(at, from.size(), to));
+  return problems_of(grouser::changed(kSphere, from, to));
 }
 
 TEST(FluidCase, PlacedGrainsInAFluidReadBackToTheSameBits) {

@@ -6,6 +6,7 @@
 #include "base/case.hpp"
 #include "base/lattice_units.hpp"
 #include "base/time_step.hpp"
+#include "tests/base/case_problems.hpp"
 
 namespace grouser {
 namespace {
@@ -30,19 +31,8 @@ fluid:
     mach: 0.02
 )";
 
-std::string problems_of(const std::string& text) {
-  std::vector<Problem> problems;
-  read_case(parse_yaml(text, "case.yaml"), problems);
-  std::string all;
-  for (const Problem& problem : problems) all += problem.text() + "\n";
-  return all;
-}
-
 std::string changed(const std::string& from, const std::string& to) {
-  std::string text = kSphere;
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
+  return grouser::changed(kSphere, from, to);
 }
 
 Case case_of(const std::string& text) {

@@ -3,8 +3,7 @@
 
 #include <algorithm>
 
-#include "engine/terrain/wheel.hpp"
-#include "tests/engine/small_world.hpp"
+#include "tests/engine/drum_world.hpp"
 
 namespace grouser {
 namespace {
@@ -13,44 +12,23 @@ namespace {
 
 const ActivityRule kSleep{6e-4, 0.1, 50};  // 0.002 of sqrt(g d) of 8 mm
 
-std::uint64_t hash_of(const World& world) {
-  State state;
-  world.save_state(state);
-  return hash_state(world.ranks(), state);
-}
-
 // Grains in a box and a drum above them.
 World pile(const Communicator& ranks, const ActivityRule& rule, double skin = 1e-3,
            int threads = 1) {
-  WorldSettings settings = small_settings();
-  settings.rolling = "elastic_plastic";
-  settings.skin = skin;
-  settings.time_step = 1e-5;
+  WorldSettings settings = rolling_settings(skin);
   settings.activity = rule;
   settings.threads = threads;
   World world(ranks, settings);
-  add_box(world, {0.5, 0.4, 0.05});
-  WheelCase drum;
-  drum.diameter = 0.05;
-  drum.width = 0.04;
-  drum.facets = 36;
-  const std::size_t wheel =
-      world.add_body("drum", wheel_mesh(drum), kTestSolid, {0.5, 0.6, 0.1}, true);
-  world.body(wheel).motion.position = {0.04, 0.05, 0.07};
+  add_box_and_drum(world, 0.05, {0.04, 0.05, 0.07});
   const std::vector<Particle> grains = loose_column(324, 5);
-  const auto count = static_cast<std::int64_t>(grains.size());
-  for (std::int64_t i = first_key(count, ranks.size(), ranks.rank());
-       i < first_key(count, ranks.size(), ranks.rank() + 1); ++i)
-    world.add_particle(grains[static_cast<std::size_t>(i)]);
+  add_share(world, 324, [&](std::size_t i) { return grains[i]; });
   return world;
 }
 
 void run(World& world, int steps) {
   for (int i = 0; i < steps; ++i) {
     ASSERT_EQ(world.step().fault, Fault::kNone);
-    BodyMotion& motion = world.body(1).motion;
-    motion.position += world.settings().time_step * motion.velocity;
-    motion.angle += world.settings().time_step * motion.spin;
+    move_drum(world);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "engine/terrain/wheel.hpp"
+#include "tests/engine/drum_world.hpp"
 #include "tests/engine/reference_world.hpp"
 #include "tests/engine/small_world.hpp"
 
@@ -12,39 +13,20 @@ namespace {
 
 // Run under mpirun with any number of ranks; the first also runs the same on its own to compare.
 
-std::uint64_t hash_of(const World& world) {
-  State state;
-  world.save_state(state);
-  return hash_state(world.ranks(), state);
-}
-
 // Grains that rain into a box with a spinning drum in the middle of it.
 World rain(const Communicator& ranks, double skin, std::uint64_t seed, double speed = 1.0,
            double uneven = 1.05) {
-  WorldSettings settings = small_settings();
-  settings.rolling = "elastic_plastic";
-  settings.skin = skin;
-  settings.time_step = 1e-5;
+  WorldSettings settings = rolling_settings(skin);
   settings.uneven = uneven;
   World world(ranks, settings);
-  add_box(world, {0.5, 0.4, 0.05});
-  WheelCase drum;
-  drum.diameter = 0.05;
-  drum.width = 0.04;
-  drum.facets = 36;
-  const std::size_t wheel =
-      world.add_body("drum", wheel_mesh(drum), kTestSolid, {0.5, 0.6, 0.1}, true);
-  world.body(wheel).motion.position = {0.05, 0.05, 0.06};
-  world.body(wheel).motion.spin = 20.0;
+  add_box_and_drum(world, 0.05, {0.05, 0.05, 0.06}).spin = 20.0;
   const std::vector<Particle> grains = loose_column(243, seed);
-  const auto count = static_cast<std::int64_t>(grains.size());
-  for (std::int64_t i = first_key(count, ranks.size(), ranks.rank());
-       i < first_key(count, ranks.size(), ranks.rank() + 1); ++i) {
-    Particle p = grains[static_cast<std::size_t>(i)];
+  add_share(world, 243, [&](std::size_t i) {
+    Particle p = grains[i];
     p.position.z += 0.1;
     p.velocity.z -= speed;
-    world.add_particle(p);
-  }
+    return p;
+  });
   return world;
 }
 
@@ -52,11 +34,7 @@ World rain(const Communicator& ranks, double skin, std::uint64_t seed, double sp
 void run(World& world, int steps) {
   for (int i = 0; i < steps; ++i) {
     ASSERT_EQ(world.step().fault, Fault::kNone);
-    BodyMotion& motion = world.body(1).motion;
-    motion.spin += world.load(1).moment_y() * world.settings().time_step / 1e-4;
-    motion.velocity.x += world.load(1).force_x.value() * world.settings().time_step / 2.0;
-    motion.position += world.settings().time_step * motion.velocity;
-    motion.angle += world.settings().time_step * motion.spin;
+    drive_drum(world);
   }
 }
 
@@ -73,15 +51,6 @@ TEST(Invariance, TrajectoryIsTheSameBitForBitOnAnyNumberOfRanks) {
   // The test means something only when grains touched, moved between ranks and hit the drum.
   EXPECT_GT(together.contacts(), 200);
   EXPECT_NE(together.body(1).motion.spin, 20.0);
-}
-
-// Cuts by few grains that weigh much: boxes change all the time, some are thinner than a grain.
-void cut_anew(World& world, std::uint64_t seed) {
-  std::vector<double> weights;
-  for (std::size_t i = 0; i < world.owned(); ++i)
-    weights.push_back(
-        std::pow(random_unit(seed, static_cast<std::uint64_t>(world.particles()[i].id), 0), 20.0));
-  world.cut_by(weights);
 }
 
 TEST(Invariance, TrajectoryIsTheSameHoweverOftenAndWhereverSpaceIsCut) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/terrain/wheel.hpp"
+#include "tests/engine/drum_world.hpp"
 #include "tests/engine/small_world.hpp"
 
 namespace grouser {
@@ -14,12 +15,6 @@ namespace {
 // have chunks of them, and share borders that grains cross.
 constexpr int kGrains = 2500;
 constexpr int kSteps = 1600;
-
-std::uint64_t hash_of(const World& world) {
-  State state;
-  world.save_state(state);
-  return hash_state(world.ranks(), state);
-}
 
 Particle grain(int i, std::uint64_t seed) {
   const auto item = static_cast<std::uint64_t>(i);
@@ -39,37 +34,20 @@ Particle grain(int i, std::uint64_t seed) {
 // Grains that rain on others and on a drum that is driven by what they do to it.
 World rain(const Communicator& ranks, int threads, double skin, std::uint64_t seed,
            double uneven = 1.05) {
-  WorldSettings settings = small_settings();
+  WorldSettings settings = rolling_settings(skin);
   settings.largest_radius = 2e-3;
-  settings.rolling = "elastic_plastic";
-  settings.skin = skin;
-  settings.time_step = 1e-5;
   settings.threads = threads;
   settings.uneven = uneven;
   World world(ranks, settings);
-  add_box(world, {0.5, 0.4, 0.05});
-  WheelCase drum;
-  drum.diameter = 0.03;
-  drum.width = 0.04;
-  drum.facets = 36;
-  const std::size_t wheel =
-      world.add_body("drum", wheel_mesh(drum), kTestSolid, {0.5, 0.6, 0.1}, true);
-  world.body(wheel).motion.position = {0.05, 0.05, 0.026};
-  world.body(wheel).motion.spin = 20.0;
-  for (std::int64_t i = first_key(kGrains, ranks.size(), ranks.rank());
-       i < first_key(kGrains, ranks.size(), ranks.rank() + 1); ++i)
-    world.add_particle(grain(static_cast<int>(i), seed));
+  add_box_and_drum(world, 0.03, {0.05, 0.05, 0.026}).spin = 20.0;
+  add_share(world, kGrains, [&](std::size_t i) { return grain(static_cast<int>(i), seed); });
   return world;
 }
 
 void run(World& world, int steps) {
   for (int i = 0; i < steps; ++i) {
     ASSERT_EQ(world.step().fault, Fault::kNone);
-    BodyMotion& motion = world.body(1).motion;
-    motion.spin += world.load(1).moment_y() * world.settings().time_step / 1e-4;
-    motion.velocity.x += world.load(1).force_x.value() * world.settings().time_step / 2.0;
-    motion.position += world.settings().time_step * motion.velocity;
-    motion.angle += world.settings().time_step * motion.spin;
+    drive_drum(world);
   }
 }
 
@@ -96,15 +74,6 @@ TEST(Threads, TrajectoryIsTheSameBitForBitOnAnyNumberOfThreadsAndRanks) {
     ASSERT_EQ(hash_of(world), expected) << threads << " threads";
     EXPECT_GT(world.kinetic_energy(), 0.0);
   }
-}
-
-// Cuts by few grains that weigh much.
-void cut_anew(World& world, std::uint64_t seed) {
-  std::vector<double> weights;
-  for (std::size_t i = 0; i < world.owned(); ++i)
-    weights.push_back(
-        std::pow(random_unit(seed, static_cast<std::uint64_t>(world.particles()[i].id), 0), 20.0));
-  world.cut_by(weights);
 }
 
 TEST(Threads, CutsBetweenRanksAndChunksInTheMiddleChangeNoBit) {
